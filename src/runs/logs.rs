@@ -1,7 +1,7 @@
-//! Logs of training and evaluation: `logs/training.pkl` and `logs/evaluation_N.pkl` in a run's folder, as the Python
-//! kit writes and reads them, each with the same data next to it in a common format (`.jsonl`, `.npz`).
+//! Logs of training and evaluation: `logs/training.pkl` and `logs/evaluation_N.pkl` in a run's folder, in the Python kit's format, each
+//! with the same data beside it in a common format (`.jsonl`, `.npz`).
 //!
-//! Every file is replaced as a whole: a run that is killed leaves the last complete log.
+//! Every file is replaced as a whole, so a killed run leaves the last complete log.
 
 mod episode;
 mod line;
@@ -28,15 +28,15 @@ use crate::limits::Limits;
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum LogError {
-    /// There is no log.
+    /// The log does not exist.
     #[error(
         "{}: no such log; train into this save_dir first (babybench train, or make_env with training)", path.display()
     )]
     Missing {
-        /// Where it was expected.
+        /// Its expected path.
         path: PathBuf,
     },
-    /// The file system refuses.
+    /// The file system returned an error.
     #[error("{}: {source}", path.display())]
     Io {
         /// The file or folder.
@@ -52,12 +52,12 @@ pub enum LogError {
         /// Description of the fault.
         source: PickleError,
     },
-    /// The file is a pickle, but not of such a log.
+    /// The file is a pickle, but not of this kind of log.
     #[error("{}: no {kind} log of BabyBench: {reason}", path.display())]
     Foreign {
         /// The file.
         path: PathBuf,
-        /// Which log was expected.
+        /// The expected kind of log.
         kind: &'static str,
         /// Description of the fault.
         reason: String,
@@ -68,7 +68,7 @@ pub enum LogError {
         /// The file or folder of logs.
         path: PathBuf,
     },
-    /// The log cannot be expressed.
+    /// The log cannot be encoded.
     #[error("cannot write the log: {0}")]
     Write(String),
 }
@@ -88,7 +88,7 @@ pub fn evaluation_path(save_dir: impl AsRef<Path>, episode: u64) -> PathBuf {
     folder(save_dir.as_ref()).join(format!("evaluation_{episode}.pkl"))
 }
 
-/// Creates the folder of the logs, or removes the unfinished files of killed processes from it.
+/// Creates the folder of the logs, or removes unfinished files of killed processes from it.
 fn make_folder(save_dir: &Path) -> Result<(), LogError> {
     let path = folder(save_dir);
     check_inside(&path)?;
@@ -100,7 +100,7 @@ fn make_folder(save_dir: &Path) -> Result<(), LogError> {
     Ok(())
 }
 
-/// Makes the folder of the logs and takes possession of the run.
+/// Creates the folder of the logs and locks the run.
 fn own_folder(save_dir: &Path) -> Result<Arc<Owner>, LogError> {
     make_folder(save_dir)?;
     let path = save_dir.to_path_buf();
@@ -109,17 +109,17 @@ fn own_folder(save_dir: &Path) -> Result<Arc<Owner>, LogError> {
         .map_err(|source| LogError::Io { path, source })
 }
 
-/// Refuses a file in the folder of logs, or that folder itself, if a link leads out of the folder of the run.
+/// Returns an error if a link leads from the folder of logs, or from a file in it, out of the folder of the run.
 fn check_inside(path: &Path) -> Result<(), LogError> {
     let logs = path.ancestors().take(2).find(|at| at.ends_with("logs"));
     let run = match logs.and_then(Path::parent) {
-        // of a relative path: the current folder
+        // for a relative path: the current folder
         Some(run) if run.as_os_str().is_empty() => Path::new("."),
         Some(run) => run,
-        // a log by itself belongs to no run
+        // a single log belongs to no run
         None => return Ok(()),
     };
-    // what is not there yet leads nowhere
+    // a missing file leads nowhere
     let (Ok(run), Ok(target)) = (run.canonicalize(), path.canonicalize()) else {
         return Ok(());
     };
@@ -166,7 +166,7 @@ fn whole(n: u64) -> i64 {
     i64::try_from(n).unwrap_or(i64::MAX)
 }
 
-/// Converts a record to a dictionary with the keys of the kit, in its order.
+/// Converts a record to a dictionary with the kit's keys, in its order.
 fn to_value(info: &Info) -> Value {
     let number = |n: u64| Value::Int(whole(n));
     Value::dict(info.fields(None).filter_map(|(key, value)| {

@@ -10,8 +10,7 @@ use crate::vector::{AutoresetMode, Batch, VectorEnv, VectorError, VectorOptions}
 
 /// A [`VectorEnv`] whose episodes are added to one training log as they end.
 ///
-/// Episodes that end in one step are logged in the order of their environments, so that the log is the same whatever the
-/// number of threads.
+/// Episodes that end in the same step are logged in the order of their environments, so the log does not depend on the number of threads.
 ///
 /// ```
 /// use babybench::runs::RunVector;
@@ -42,7 +41,7 @@ pub struct RunVector {
     vector: VectorEnv,
     log: TrainingLog,
     compat: Compat,
-    /// Which environments start an episode.
+    /// The environments that start an episode.
     mask: Vec<bool>,
     ids: Vec<usize>,
 }
@@ -56,8 +55,8 @@ impl Deref for RunVector {
 }
 
 impl RunVector {
-    /// Makes `n` environments for training: writes `scene.xml` and starts the training
-    /// log, or resumes the one that is there, as [`start_training`](super::start_training) does.
+    /// Creates `n` environments for training: writes `scene.xml` and starts the training log, or resumes an existing one, as
+    /// [`start_training`](super::start_training) does.
     ///
     /// # Errors
     /// As [`VectorEnv::new`], [`start_training`](super::start_training).
@@ -88,8 +87,8 @@ impl RunVector {
         &mut self.vector
     }
 
-    /// Logs the episodes that are over, in the order of their environments, and starts the next ones. What they begin with
-    /// is in [`VectorEnv::batch`]. Returns for each environment whether it began an episode.
+    /// Logs the episodes that are over, in the order of their environments, and starts the next ones. Their first observations are in
+    /// [`VectorEnv::batch`]. Returns for each environment whether it started an episode.
     ///
     /// # Errors
     /// As [`VectorEnv::reset`]; a log that cannot be written.
@@ -106,10 +105,10 @@ impl RunVector {
         Ok(&self.mask)
     }
 
-    /// Applies an action in each of the first environments, as many as there are actions , (n, len).
+    /// Applies actions, (n, len), in the first n environments.
     ///
     /// # Errors
-    /// As [`VectorEnv::step`]; a diverged environment that [`RunVector::start_episodes`] has not started anew.
+    /// As [`VectorEnv::step`]; a diverged environment that [`RunVector::start_episodes`] has not restarted.
     pub fn step(&mut self, actions: &[f32]) -> Result<Batch<'_>, RunError> {
         let len = self.vector.single_action_space().len().max(1);
         let n = actions.len() / len;
@@ -130,14 +129,14 @@ impl RunVector {
         let env = self.vector.env_mut(env)?;
         let steps = env.by_hand().end_episode();
         if steps > 0 || first {
-            // the empty record that the kit's first reset adds stands there once
+            // the empty record of the kit's first reset appears once
             self.log.end_episode_of(steps, env.info())?;
         }
         Ok(())
     }
 
-    /// Saves the training log, under `compat: api` with the running episodes, which end; under `compat: reference` with
-    /// those that are over.
+    /// Saves the training log. Under `compat: api` the running episodes end and are included; under `compat: reference` only finished
+    /// ones are.
     ///
     /// # Errors
     /// Errors of the file system; environments in flight.

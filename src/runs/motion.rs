@@ -1,4 +1,4 @@
-//! Motions: joint angles over time, from a video of an infant, a capture or a record, and what MIMo senses when he moves so.
+//! Motions: joint angles over time, from a video of an infant, a motion capture or a record, and MIMo's senses while he follows them.
 
 mod check;
 mod play;
@@ -24,7 +24,7 @@ pub enum MotionError {
     /// The archive cannot be read.
     #[error(transparent)]
     Npz(#[from] NpzError),
-    /// The file system refuses.
+    /// The file system returned an error.
     #[error("{}: {source}", path.display())]
     Io {
         /// The file.
@@ -48,27 +48,27 @@ pub enum MotionError {
         /// Description of the fault.
         reason: String,
     },
-    /// The parts of a motion do not fit each other, or are beyond what is allowed.
+    /// The parts of a motion do not match, or exceed a limit.
     #[error("{0}")]
     Unfit(String),
-    /// A number is not finite, or no angle in rad.
+    /// A number is not finite, or not an angle in rad.
     #[error("frame {frame} of {name:?} is {value}: {expected}")]
     Number {
         /// The row, from 0.
         frame: usize,
-        /// The joint, or what of the root.
+        /// The joint, or the part of the root.
         name: String,
         /// The number.
         value: f64,
-        /// The value that is expected instead.
+        /// The expected value.
         expected: &'static str,
     },
-    /// MIMo has no such joint.
+    /// MIMo does not have the joint.
     #[error("MIMo has no joint {name:?} that turns by an angle{hint}")]
     Joint {
         /// The name.
         name: String,
-        /// The name that may be meant, in words; empty without one.
+        /// A suggestion of the intended name, in words; may be empty.
         hint: String,
     },
     /// The motion moves the root, but MIMo's is fixed.
@@ -81,7 +81,7 @@ pub enum MotionError {
         "muscles do not follow angles: set actuation_model: spring_damper or positional, or play the motion without tracking"
     )]
     Muscles,
-    /// The environment fails.
+    /// The environment returned an error.
     #[error(transparent)]
     Env(Box<EnvError>),
     /// The record cannot be written.
@@ -101,7 +101,7 @@ impl From<RecordError> for MotionError {
     }
 }
 
-/// Angles of some of MIMo's joints over time, and where his root is, if that is known.
+/// Angles of some of MIMo's joints over time, and the pose of his root, if known.
 ///
 /// ```
 /// use babybench::runs::Motion;
@@ -120,12 +120,12 @@ pub struct Motion {
 }
 
 impl Motion {
-    /// Takes a motion: the names of joints, rows per second, angles in rad, shape (frames, joints), and the poses of the root in the
-    /// world, m and unit quaternions, one for each frame. Quaternions are normalised.
+    /// Creates a motion from the names of joints, rows per second, angles in rad, shape (frames, joints), and the poses of the root in
+    /// the world, m and unit quaternions, one for each frame. Quaternions are normalised.
     ///
     /// # Errors
-    /// No frame, other lengths, names that stand twice, numbers that are not finite, angles beyond two turns, a rate that is
-    /// not positive, more than the limits allow.
+    /// No frames, wrong lengths, duplicate names, numbers that are not finite, angles beyond two turns, a rate that is not positive, or
+    /// more than the limits allow.
     pub fn new(
         names: Vec<String>,
         rate: f64,
@@ -135,7 +135,7 @@ impl Motion {
         Self::new_with(names, rate, angles, root, &Limits::DEFAULT)
     }
 
-    /// Takes a motion, as [`Motion::new`] does, within other limits than the default ones.
+    /// Creates a motion, as [`Motion::new`] does, within limits of the caller's choice.
     ///
     /// # Errors
     /// As [`Motion::new`].
@@ -158,9 +158,10 @@ impl Motion {
 
     /// Reads a motion: a NumPy archive (`.npz`) or a table (`.csv`).
     ///
-    /// An archive has `names` (joints), `angles` (frames, joints), rad, and `rate`, Hz; where the root is known, `root_pos`
-    /// (frames, 3), m, and `root_quat` (frames, 4), w first. A table has a line of names, the first of which is `time`, s; each further
-    /// line is a frame, at equal distances. Columns `root_x`, `root_y`, `root_z`, `root_qw`, `root_qx`, `root_qy`, `root_qz` are the root.
+    /// An archive has `names` (joints), `angles` (frames, joints), rad, and `rate`, Hz; if the root is known, also `root_pos` (frames,
+    /// 3), m, and `root_quat` (frames, 4), w first. A table has a line of names, the first of which is `time`, s. Each further line is a
+    /// frame, evenly spaced in time. The columns `root_x`, `root_y`, `root_z`, `root_qw`, `root_qx`, `root_qy` and `root_qz` are the
+    /// root.
     ///
     /// # Errors
     /// A file that cannot be read or is damaged; as [`Motion::new`].
@@ -168,7 +169,7 @@ impl Motion {
         Self::read_with(path, false, &Limits::DEFAULT)
     }
 
-    /// Reads a motion, as [`Motion::read`] does; the angles of the file are in `degrees`, or in rad.
+    /// Reads a motion, as [`Motion::read`] does, from a file whose angles are in degrees if `degrees` is true, and otherwise in rad.
     ///
     /// # Errors
     /// As [`Motion::read`].
@@ -263,7 +264,7 @@ impl Motion {
         &self.angles
     }
 
-    /// Returns where the root is in each frame, if that is known.
+    /// Returns the pose of the root in each frame, if known.
     pub fn root(&self) -> Option<&[(Vec3, Quat)]> {
         self.root.as_deref()
     }

@@ -1,4 +1,4 @@
-//! Records of runs: folders that describe themselves, with everything that happened, for analysis and for replay.
+//! Records of runs: self-describing folders with everything that happened, for analysis and for replay.
 //!
 //! A folder has `manifest.json` ([`Manifest`]) and a NumPy archive for each episode. In Python two lines read one:
 //!
@@ -7,7 +7,7 @@
 //! episode = numpy.load("record/episode_0.npz")    # episode["qpos"], episode["touch_val"], ...
 //! ```
 //!
-//! An archive starts with a snapshot, so that [`Record::replay`] repeats the episode with the same bits, and checks them step by step.
+//! An archive starts with a snapshot, so [`Record::replay`] repeats the episode with the same bits, and checks them step by step.
 
 mod describe;
 mod manifest;
@@ -38,33 +38,33 @@ const MANIFEST: &str = "manifest.json";
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum RecordError {
-    /// The folder has a record already.
+    /// The folder already has a record.
     #[error("{}: this folder already has a record; choose another folder, or remove this one", path.display())]
     Exists {
         /// The folder.
         path: PathBuf,
     },
-    /// Images are to be recorded, but the eyes do not see.
+    /// Images are to be recorded, but vision is off.
     #[error("there are no images to record: set vision_active: true, or record without the eyes")]
     Blind,
-    /// Steps are to be recorded before an episode began.
+    /// A step is to be recorded before an episode has begun.
     #[error("no episode is being recorded: call Recorder::begin after the reset of the environment")]
     NotBegun,
-    /// The environments of a vector are to be recorded that resets them by itself.
+    /// The environments to be recorded are in a vector that resets them itself.
     #[error(
         "a step of this vector resets environments before their end can be recorded: make it with AutoresetMode::Disabled"
     )]
     Autoreset,
-    /// The environment fails.
+    /// The environment returned an error.
     #[error(transparent)]
     Env(#[from] EnvError),
-    /// An environment of a vector fails.
+    /// An environment of a vector returned an error.
     #[error(transparent)]
     Vector(#[from] VectorError),
     /// An archive cannot be written or read.
     #[error(transparent)]
     Npz(#[from] NpzError),
-    /// The file system refuses.
+    /// The file system returned an error.
     #[error("{}: {source}", path.display())]
     Io {
         /// The file or folder.
@@ -72,7 +72,7 @@ pub enum RecordError {
         /// The error of the system.
         source: io::Error,
     },
-    /// The description is damaged, or of something else.
+    /// The description is damaged, or not of a record.
     #[error("{}: not a record of babybench: {reason}", path.display())]
     Manifest {
         /// The file.
@@ -80,17 +80,17 @@ pub enum RecordError {
         /// Description of the fault.
         reason: String,
     },
-    /// There is no such episode.
+    /// The episode does not exist.
     #[error("{}: no episode {episode}; there are {}", path.display(), numbers(.there))]
     Episode {
         /// The folder.
         path: PathBuf,
-        /// The episode asked for.
+        /// The requested episode.
         episode: u64,
-        /// The episodes that there are.
+        /// The existing episodes.
         there: Vec<u64>,
     },
-    /// An archive does not fit the environment or its description.
+    /// An archive does not match the environment or its description.
     #[error("{}: {reason}", path.display())]
     Unfit {
         /// The file.
@@ -108,7 +108,7 @@ pub enum RecordError {
     },
 }
 
-/// Lists numbers of episodes, the first few of them.
+/// Lists the first few numbers of episodes.
 fn numbers(there: &[u64]) -> String {
     let first: Vec<String> = there.iter().take(10).map(u64::to_string).collect();
     match (there.len(), first.is_empty()) {
@@ -121,16 +121,16 @@ fn numbers(there: &[u64]) -> String {
 /// Further contents of a record, besides states, actions, touch, contacts, rewards and information.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct RecordOptions {
-    /// Whether every other sense is recorded as it was observed, step by step. Without it they are left to a replay, which has the same
-    /// bits: they would take more room than all the rest.
+    /// Whether every other sense is recorded as observed, step by step. Without it they are left to a replay, which has the same bits:
+    /// they would take more space than everything else.
     pub senses: bool,
-    /// Every how many steps what both eyes observed is recorded, the first of an episode among them; `None` for never.
+    /// Interval, in steps, at which both eyes are recorded, starting with the first step of an episode; `None` for never.
     pub eyes_every: Option<u64>,
     /// Name of the policy, for the description.
     pub policy: String,
 }
 
-/// The parts that the recorders of one folder share.
+/// The state shared by the recorders of one folder.
 #[derive(Debug)]
 struct Shared {
     dir: PathBuf,
@@ -166,15 +166,15 @@ struct Shared {
 pub struct Recorder {
     shared: Arc<Shared>,
     rows: Option<(u64, Box<Rows>)>,
-    /// Those of an episode that has ended, for their room.
+    /// The rows of a finished episode, kept for their allocations.
     spare: Option<Box<Rows>>,
 }
 
 impl Recorder {
-    /// Makes the folder of a record, for an environment.
+    /// Creates the folder of a record, for an environment.
     ///
     /// # Errors
-    /// A folder that has a record, one that cannot be made; eyes that do not see.
+    /// A folder that has a record or cannot be created; eyes that are off.
     pub fn create(dir: impl Into<PathBuf>, env: &Env, options: RecordOptions) -> Result<Self, RecordError> {
         let dir = dir.into();
         if dir.join(MANIFEST).exists() {
@@ -202,7 +202,7 @@ impl Recorder {
         })
     }
 
-    /// Returns another recorder into the same folder, for an environment of the same blueprint that runs beside.
+    /// Returns another recorder into the same folder, for a parallel environment of the same blueprint.
     #[must_use]
     pub fn another(&self) -> Self {
         Self {
@@ -217,7 +217,7 @@ impl Recorder {
         &self.shared.dir
     }
 
-    /// Begins to record an episode from the present moment on, under a number that no other episode of the folder has. An episode that
+    /// Starts recording an episode from the current moment on, under a number that no other episode of the folder has. An episode that
     /// was not ended is lost.
     pub fn begin(&mut self, env: &Env, episode: u64) {
         let options = &self.shared.options;
@@ -232,44 +232,43 @@ impl Recorder {
         self.rows = Some((episode, rows));
     }
 
-    /// Applies an action, as [`Env::step`] does, and records what comes of it.
+    /// Applies an action, as [`Env::step`] does, and records the result.
     ///
-    /// A record repeats resets, actions and random choices. What a program changes between steps (the state, locks, forces) is not
-    /// among them: a replay then finds the step at which the bits differ.
+    /// A replay repeats resets, actions and random choices. It does not repeat changes by a program between steps (the state, locks,
+    /// forces), and reports the step at which the bits differ.
     ///
     /// # Errors
-    /// As [`Env::step`]; no episode was begun.
+    /// As [`Env::step`]; no episode has begun.
     pub fn step(&mut self, env: &mut Env, action: &[f32]) -> Result<(), RecordError> {
         if self.rows.is_none() {
             return Err(RecordError::NotBegun);
         }
         let drawn = env.drawn();
         env.step(action)?;
-        // checksums are of images, too
+        // checksums include images
         env.look()?;
         self.push(env, action, drawn)
     }
 
-    /// Records a step that was made; `drawn` is how many numbers the generator had drawn before it.
+    /// Records a step. `drawn` is how many numbers the generator had drawn before it.
     fn push(&mut self, env: &Env, action: &[f32], drawn: u64) -> Result<(), RecordError> {
         let (_, rows) = self.rows.as_mut().ok_or(RecordError::NotBegun)?;
         rows.push(env, action, drawn, &self.shared.options);
         Ok(())
     }
 
-    /// Records the present moment of an environment as a step, with the action that is said to have led to it: for steps that a program
-    /// puts together itself ([`Env::by_hand`]). A replay, which knows actions alone, finds other bits there. Images that wait for
-    /// [`Env::look`] are not recorded.
+    /// Records the current moment of an environment as a step, with the action that is said to have led to it, for steps that a program
+    /// composes itself ([`Env::by_hand`]). A replay, which knows only actions, finds other bits there. Images that [`Env::look`] has yet
+    /// to draw are not recorded.
     ///
     /// # Errors
-    /// No episode was begun; an action of wrong length or with numbers that are not finite.
+    /// No episode has begun; an action of wrong length or with numbers that are not finite.
     pub fn note(&mut self, env: &Env, action: &[f32]) -> Result<(), RecordError> {
         env.check_action(action)?;
         self.push(env, action, env.drawn())
     }
 
-    /// Ends the episode, before the next reset: writes its archive and brings the description up to date. Without steps nothing is
-    /// written.
+    /// Ends the episode, before the next reset: writes its archive and updates the description. An episode without steps is not written.
     ///
     /// # Errors
     /// Errors of the file system.

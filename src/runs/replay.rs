@@ -1,4 +1,4 @@
-//! Replaying a recorded run: same start, same actions, everything the environment produces.
+//! Replays of recordings: same start, same actions, and everything the environment produces.
 
 mod output;
 mod recording;
@@ -15,10 +15,10 @@ use crate::physics::FreeBody;
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum ReplayError {
-    /// The archive cannot be read, or the result not written.
+    /// The archive cannot be read, or the result cannot be written.
     #[error(transparent)]
     Npz(#[from] NpzError),
-    /// An array does not fit the environment.
+    /// An array does not match the environment.
     #[error("array {name} of the recording has shape {found:?} but the configuration needs {expected}")]
     Shape {
         /// Array.
@@ -55,8 +55,7 @@ pub fn replay(env: &mut Env, recording: &Recording, one_step: bool) -> Result<Re
     replay_with_images(env, recording, one_step, None)
 }
 
-/// Replays a recording and takes pictures of both eyes in every `images_every`-th step, beginning with the first; see
-/// [`replay`].
+/// Replays a recording and takes pictures of both eyes in every `images_every`-th step, starting with the first; see [`replay`].
 ///
 /// # Errors
 /// As [`replay`].

@@ -27,7 +27,7 @@ const SCENE: &str = "scene.xml";
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum SceneFileError {
-    /// The file system refuses.
+    /// The file system returned an error.
     #[error("{}: {source}", path.display())]
     Io {
         /// The file or folder.
@@ -35,7 +35,7 @@ pub enum SceneFileError {
         /// The error of the system.
         source: std::io::Error,
     },
-    /// An asset cannot be put into one document.
+    /// An asset cannot be merged into one document.
     #[error("scene: {file}: {reason}")]
     Asset {
         /// The asset.
@@ -49,7 +49,7 @@ pub enum SceneFileError {
     /// A custom scene that cannot be read.
     #[error(transparent)]
     Room(#[from] RoomError),
-    /// The folder's scene is another one.
+    /// The folder holds the scene of another run.
     #[error(
         "{}: this is {found}, but the configuration describes {wanted}; positions and geoms in the logs would not \
          match the scene: give the configuration a save_dir of its own", path.display()
@@ -62,12 +62,12 @@ pub enum SceneFileError {
         /// The expected kind.
         wanted: String,
     },
-    /// A scene without a configuration in its comment, or with one that is not allowed.
+    /// A scene without a configuration in its comment, or with an invalid one.
     #[error("invalid configuration in the comment of the scene: {0}")]
     Config(#[from] ConfigError),
 }
 
-/// A document and the files that it names, by path relative to it.
+/// A document and the files that it names, by relative path.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SceneFile {
     /// The document.
@@ -76,7 +76,7 @@ pub struct SceneFile {
     pub files: BTreeMap<String, Vec<u8>>,
 }
 
-/// Writes the scene of a configuration, from the embedded assets, as one document.
+/// Returns the scene of a configuration, from the embedded assets, as one document.
 ///
 /// # Errors
 /// None with the embedded assets.
@@ -84,10 +84,10 @@ pub fn complete_scene(config: &Config) -> Result<SceneFile, SceneFileError> {
     complete_scene_from(config, &embedded())
 }
 
-/// Writes the scene of a configuration, from other assets that are laid out like the embedded ones, as one document.
+/// Returns the scene of a configuration, from assets laid out like the embedded ones, as one document.
 ///
 /// # Errors
-/// Assets that are missing or no XML.
+/// Assets that are missing or not XML.
 pub fn complete_scene_from(config: &Config, assets: &dyn AssetSource) -> Result<SceneFile, SceneFileError> {
     let room = open_room(config, assets)?;
     complete_document(&scene_xml(config), config, room.as_ref().map_or(assets, |room| room))
@@ -98,7 +98,7 @@ fn complete_document(document: &str, config: &Config, assets: &dyn AssetSource) 
     complete(document, document_path(config), comment(config), assets)
 }
 
-/// Writes `scene.xml` and what it names, from the embedded assets, into the folder of a run, which is made if it is not there.
+/// Writes `scene.xml` and its files, from the embedded assets, into the folder of a run, which is created if necessary.
 ///
 /// # Errors
 /// Errors of the file system.
@@ -107,7 +107,7 @@ pub fn write_scene(config: &Config, save_dir: &Path) -> Result<PathBuf, SceneFil
     write_scene_from(config, &embedded(), save_dir)
 }
 
-/// Writes `scene.xml` as [`write_scene`] does, from other assets that are laid out like the embedded ones.
+/// Writes `scene.xml` as [`write_scene`] does, from assets laid out like the embedded ones.
 ///
 /// # Errors
 /// Assets that are missing or not XML; errors of the file system.
@@ -140,26 +140,25 @@ fn write_scene_file(scene: &SceneFile, save_dir: &Path) -> Result<PathBuf, Scene
     Ok(path)
 }
 
-/// The scene that the folder of a run already had; see [`keep_scene`].
+/// The state of the scene in the folder of a run; see [`keep_scene`].
 #[derive(Debug)]
 pub enum KeptScene {
-    /// Nothing: it was written.
+    /// There was none, and it was written.
     Written,
-    /// The same scene.
+    /// It is the same scene.
     Same,
-    /// The same bodies, joints and geoms with other numbers, such as masses: of other assets or another release.
+    /// It has the same bodies, joints and geoms with other numbers, such as masses, from other assets or another release.
     Similar,
-    /// A document that does not load here, such as the Python kit's, which names files of its installation.
+    /// It does not load here, like the Python kit's, which names files of its installation.
     Foreign(Box<SceneFileError>),
 }
 
 /// Ensures that the folder of a run holds the scene of an environment.
 ///
-/// If there is none, it is written as training writes it; one that is there belongs to the logs beside it and is never
-/// changed.
+/// If there is none, it is written as training writes it. An existing one belongs to the logs beside it and is never changed.
 ///
 /// # Errors
-/// [`SceneFileError::Different`] for a scene in which positions and geom ids mean something else; what the file system says.
+/// [`SceneFileError::Different`] for a scene in which positions and geom ids mean something else; errors of the file system.
 pub fn keep_scene(blueprint: &Blueprint) -> Result<KeptScene, SceneFileError> {
     let (config, model) = (blueprint.config(), blueprint.model());
     let save_dir = Path::new(&config.save_dir);
@@ -199,7 +198,7 @@ fn about(config: &Config) -> String {
 /// Loads and compiles the `scene.xml` of a run.
 ///
 /// # Errors
-/// A missing folder or document, one that is not understood.
+/// A missing folder or document, or one that cannot be read.
 pub fn read_scene(save_dir: &Path) -> Result<Model, SceneFileError> {
     let assets = DirAssets::new(save_dir).map_err(|e| SceneFileError::Asset {
         file: save_dir.display().to_string(),
@@ -211,21 +210,20 @@ pub fn read_scene(save_dir: &Path) -> Result<Model, SceneFileError> {
 /// Reads the configuration in the comment at the top of a `scene.xml`.
 ///
 /// # Errors
-/// No such comment, a configuration that is not allowed.
+/// A missing comment, or an invalid configuration.
 pub fn read_config(xml: &str) -> Result<Config, SceneFileError> {
     let text = xml.strip_prefix("<!--").and_then(|rest| rest.split_once("-->"));
     let text = text.map_or("", |(comment, _)| comment);
     Ok(Config::from_yaml(text, "scene.xml")?)
 }
 
-/// Reads the configuration in the `scene.xml` of a run, if there is one that can be read.
+/// Reads the configuration in the `scene.xml` of a run, if possible.
 pub(crate) fn scene_config(save_dir: &Path) -> Option<Config> {
     let bytes = files::read(&save_dir.join(SCENE), Limits::DEFAULT.document_bytes as u64).ok()?;
     read_config(std::str::from_utf8(&bytes).ok()?).ok()
 }
 
-/// Returns what a run follows where the API page and the Python code disagree: that of the configuration in its scene, or the page,
-/// if there is none that can be read.
+/// Returns the `compat` of a run: that of the configuration in its scene, or `api` if it cannot be read.
 pub fn scene_compat(save_dir: &Path) -> Compat {
     scene_config(save_dir).map_or(Compat::Api, |config| config.compat)
 }
@@ -238,7 +236,7 @@ fn comment(config: &Config) -> String {
         .lines()
         .filter(|l| !l.is_empty() && !l.starts_with('#'))
     {
-        // two hyphens would end the comment; only quoted text can hold them
+        // two hyphens would end the comment, and only quoted text can hold them
         out.push_str(&line.replace("--", "-\\x2D"));
         out.push('\n');
     }

@@ -1,4 +1,4 @@
-//! Environments that log their episodes, as the kit's `make_env` makes them.
+//! Environments that log their episodes, like those of the kit's `make_env`.
 
 use std::ops::Deref;
 
@@ -10,14 +10,14 @@ use crate::config::{Behavior, Compat, Config};
 use crate::env::{Blueprint, Env, EnvError, Observation, PartNames, Step, reports_outcome};
 use crate::vector::VectorError;
 
-/// An error that keeps a run from starting or continuing.
+/// An error that prevents a run from starting or continuing.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum RunError {
-    /// The environment fails.
+    /// The environment returned an error.
     #[error(transparent)]
     Env(#[from] EnvError),
-    /// The vector of environments fails.
+    /// The vector of environments returned an error.
     #[error(transparent)]
     Vector(#[from] VectorError),
     /// The log cannot be read or written.
@@ -28,10 +28,9 @@ pub enum RunError {
     SceneFile(#[from] SceneFileError),
 }
 
-/// An [`Env`] whose episodes are added to a training log as they end, if it has one.
+/// An [`Env`] that adds its episodes to a training log, if it has one, as they end.
 ///
-/// It reads like the [`Env`] in it. Changes go through [`RunEnv::reset`] and [`RunEnv::step`], so that no
-/// episode is lost.
+/// It dereferences to the [`Env`]. Changes go through [`RunEnv::reset`] and [`RunEnv::step`], so that no episode is lost.
 #[derive(Debug)]
 pub struct RunEnv {
     env: Env,
@@ -54,7 +53,7 @@ impl RunEnv {
         Self { env, log }
     }
 
-    /// Logs the episode that ends and starts the next one: see [`Env::reset`].
+    /// Logs the current episode and starts the next one: see [`Env::reset`].
     ///
     /// # Errors
     /// As [`Env::reset`]; a log that cannot be written.
@@ -91,8 +90,7 @@ impl RunEnv {
         self.log.as_ref()
     }
 
-    /// Saves the training log, under `compat: api` with the running episode, which ends. Without a log, nothing
-    /// happens.
+    /// Saves the training log. Under `compat: api` the running episode ends and is included. Without a log this has no effect.
     ///
     /// # Errors
     /// Errors of the file system.
@@ -114,9 +112,9 @@ impl RunEnv {
 
 /// Creates the environment of a configuration, for training or for evaluation.
 ///
-/// For training, the folder `save_dir` gets the complete scene (`scene.xml`) and, as episodes end, the training log,
-/// which replaces an older one; [`RunEnv::finish_training`] saves the rest. An environment for evaluation
-/// writes nothing; under `compat: reference` its counters and lists go on from episode to episode, as the kit's do.
+/// For training, the folder `save_dir` gets the complete scene (`scene.xml`) and, as episodes end, the training log, which replaces an
+/// older one. [`RunEnv::finish_training`] saves the rest. An environment for evaluation writes nothing. Under `compat: reference` its
+/// counters and lists continue from episode to episode, as the kit's do.
 ///
 /// ```
 /// use babybench::{Config, make_env};
@@ -157,11 +155,10 @@ pub fn make_env(config: Config, training: bool) -> Result<RunEnv, RunError> {
     }
 }
 
-/// Creates an environment for training: writes `scene.xml` and starts the training log, or
-/// resumes the one that is there.
+/// Creates an environment for training: writes `scene.xml` and starts the training log, or resumes an existing one.
 ///
 /// # Errors
-/// Files that cannot be written; to go on, a log that is damaged or of another behavior, a scene with other bodies.
+/// Files that cannot be written; when resuming, a log that is damaged or of another behavior, or a scene with other bodies.
 pub fn start_training(blueprint: &Blueprint, resume: bool) -> Result<RunEnv, RunError> {
     let env = blueprint.env()?;
     let log = open_training_log(blueprint, resume)?;
@@ -173,8 +170,7 @@ fn part_names(blueprint: &Blueprint) -> Option<PartNames> {
     (blueprint.config().behavior == Behavior::SelfTouch).then(|| PartNames::new(blueprint.model()))
 }
 
-/// Starts the training log in the configuration's `save_dir`, or resumes the one that is there, and writes the scene
-/// beside it.
+/// Starts the training log in the configuration's `save_dir`, or resumes an existing one, and writes the scene beside it.
 pub(super) fn open_training_log(blueprint: &Blueprint, resume: bool) -> Result<TrainingLog, RunError> {
     let config = blueprint.config();
     let names = part_names(blueprint);

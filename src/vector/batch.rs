@@ -19,10 +19,10 @@ pub struct Batch<'a> {
     pub truncated: &'a [bool],
     /// Information.
     pub infos: Infos<'a>,
-    /// The ends of the episodes that have ended in this step, with [`AutoresetMode::SameStep`](super::AutoresetMode).
+    /// The ends of the episodes that ended in this step, with [`AutoresetMode::SameStep`](super::AutoresetMode).
     pub finals: Option<Finals<'a>>,
-    /// The environments that could not go on, most often because the simulation diverged, in ascending order. Their rows
-    /// hold the observation before, and `truncated`; the mode decides when they are reset.
+    /// The environments that could not continue, usually because the simulation diverged, in ascending order. Their rows hold the
+    /// previous observation, and `truncated`. The mode decides when they are reset.
     pub failures: &'a [Failure],
 }
 
@@ -43,7 +43,7 @@ impl<'a> Batch<'a> {
     }
 }
 
-/// The ends of episodes, in the rows of the environments whose episode has ended.
+/// The ends of episodes, in the rows of the environments whose episode ended.
 #[derive(Clone, Copy, Debug)]
 pub struct Finals<'a> {
     /// Which rows hold the end of an episode (rows).
@@ -55,18 +55,18 @@ pub struct Finals<'a> {
 }
 
 impl<'a> Finals<'a> {
-    /// Returns the last observation of a row's episode, if there is such a row and it has ended.
+    /// Returns the last observation of a row's episode, if the row exists and the episode has ended.
     pub fn row(&self, row: usize) -> Option<Observation<'a>> {
         let ended = self.ended.get(row).copied().unwrap_or(false);
         ended.then(|| self.observation.row(row, self.ended.len()))
     }
 }
 
-/// An environment that could not go on.
+/// An environment that could not continue.
 #[derive(Debug)]
 pub struct Failure {
     /// The environment.
     pub env: usize,
-    /// Why.
+    /// The reason.
     pub error: EnvError,
 }

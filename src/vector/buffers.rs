@@ -1,4 +1,4 @@
-//! Caller-owned memory for what a step of a vector returns.
+//! Caller-owned buffers for the results of a step of a vector.
 
 use crate::env::{Env, Observation};
 use crate::sensors::transform::Sense;
@@ -12,7 +12,7 @@ macro_rules! buffers {
         { $(#[$first_doc:meta])* $first:ident: $first_type:ty, $first_bounds:expr, $first_source:expr; }
         $($(#[$doc:meta])* $field:ident: $type:ty, $bounds:expr, $source:expr;)*
     ) => {
-        /// Caller-owned memory for what a step returns: arrays of N rows each, environment after environment.
+        /// Caller-owned buffers for the results of a step: arrays of N rows each, environment after environment.
         ///
         /// Entries that are `None` are left out.
         #[derive(Debug, Default)]
@@ -25,18 +25,18 @@ macro_rules! buffers {
             )*
             /// Rewards (N).
             pub rewards: Option<&'a mut [f64]>,
-            /// Whether episodes have ended in themselves (N).
+            /// Whether episodes were terminated by success or failure (N).
             pub terminated: Option<&'a mut [bool]>,
-            /// Whether episodes were cut off (N).
+            /// Whether episodes were truncated (N).
             pub truncated: Option<&'a mut [bool]>,
-            /// For each row of `touch` (N) the sensors that are not zero there, if you keep both from call to call: then only
-            /// what feels something is written, instead of thousands of zeros. Start with zeros and empty lists.
+            /// For each row of `touch` (N) the sensors that are nonzero there. Keep both from call to call, and only active sensors are
+            /// written, instead of thousands of zeros. Start with zeros and empty lists.
             pub touched: Option<&'a mut [Vec<u32>]>,
         }
 
         impl<'a> Buffers<'a> {
-            /// Makes buffers of the memory that `values` returns for each entry of the observation, in the order of
-            /// [`ObservationEntry::ALL`]. Memory for another type than the entry's is left out.
+            /// Makes buffers from the memory that `values` returns for each entry of the observation, in the order of
+            /// [`ObservationEntry::ALL`]. Memory of another type than the entry's is left out.
             pub fn from_fn(mut values: impl FnMut(&'static ObservationEntry) -> Option<ValuesMut<'a>>) -> Self {
                 let mut entries = ObservationEntry::ALL.iter();
                 let mut next = || entries.next().and_then(&mut values);
@@ -57,7 +57,7 @@ macro_rules! buffers {
 observation_entries!(buffers);
 
 impl Buffers<'_> {
-    /// Checks that there is room for exactly `n` rows.
+    /// Checks that every buffer has exactly `n` rows.
     pub(super) fn check(&mut self, n: usize, layout: &Layout) -> Result<(), VectorError> {
         fn length<T>(buffer: &Option<&mut [T]>) -> Option<usize> {
             buffer.as_ref().map(|b| b.len())
@@ -83,8 +83,8 @@ impl Buffers<'_> {
         Ok(())
     }
 
-    /// Writes what an environment observes. Of thousands of touch sensors only those that feel something are copied, where
-    /// that is enough. There is room, which was checked before.
+    /// Writes the observation of an environment. Of thousands of touch sensors it copies only the active ones, if that suffices. The
+    /// lengths were checked before.
     pub(super) fn write(&mut self, row: usize, env: &Env) {
         let observation = env.observation();
         let (Some(touched), Some(out), Some(touch)) =
@@ -96,7 +96,7 @@ impl Buffers<'_> {
         let out = &mut out[row * values.len()..(row + 1) * values.len()];
         let of = |sensor: u32| width * sensor as usize..width * (sensor as usize + 1);
         for &sensor in &*touched {
-            // the caller's lists may say anything
+            // the caller's lists may hold anything
             if let Some(out) = out.get_mut(of(sensor)) {
                 out.fill(0.0);
             }
@@ -130,7 +130,7 @@ impl Buffers<'_> {
         }
     }
 
-    /// Writes a row of the entries that are chosen, if they are there and wanted.
+    /// Writes a row of the chosen entries, if they exist and have buffers.
     fn write_entries(&mut self, row: usize, observation: &Observation<'_>, chosen: impl Fn(&ObservationEntry) -> bool) {
         let observed = ObservationEntry::ALL.iter().zip(observation.values());
         for (out, (entry, values)) in self.values().into_iter().zip(observed) {

@@ -8,10 +8,10 @@ use crate::env::EnvError;
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum VectorError {
-    /// A vector of nothing was asked for.
+    /// The vector would have no environments.
     #[error("a vector needs at least one environment")]
     NoEnvironments,
-    /// The environments would not fit into memory; see [`VectorOptions::max_memory`](super::VectorOptions::max_memory).
+    /// The environments do not fit into memory; see [`VectorOptions::max_memory`](super::VectorOptions::max_memory).
     #[error(
         "{envs} environments would take {} of memory ({} each), but {} may be used: {}",
         human(*bytes), human(*each), human(*limit), advice(*fit)
@@ -64,16 +64,16 @@ pub enum VectorError {
         /// Number of values found.
         found: usize,
     },
-    /// An array that the vector would have to fill is of a sense that the environments do not have.
+    /// An array is for a sense that the environments do not have.
     #[error("{what}: the environments have no such observation")]
     NoSense {
         /// Name of the array.
         what: &'static str,
     },
-    /// There is no such environment.
+    /// The environment does not exist.
     #[error("there is no environment {env}: the vector has {envs}, counted from 0")]
     Unknown {
-        /// The number asked for.
+        /// The requested number.
         env: usize,
         /// Number of environments.
         envs: usize,
@@ -84,7 +84,7 @@ pub enum VectorError {
         /// The environment.
         env: usize,
     },
-    /// More environments are waited for than were sent.
+    /// A call waits for more environments than were sent.
     #[error(
         "recv({wanted}) waits for at least one environment and for no more than are in flight, which are {in_flight}: call send first"
     )]
@@ -108,7 +108,7 @@ pub enum VectorError {
         /// The cause.
         source: Box<EnvError>,
     },
-    /// An environment panicked. The others are unharmed; the next reset makes it anew.
+    /// An environment panicked. The others are unharmed, and the next reset rebuilds it.
     #[error("environment {env} panicked: {message}; reset it to make it anew")]
     Panicked {
         /// The environment.
@@ -116,12 +116,12 @@ pub enum VectorError {
         /// The message of the panic.
         message: String,
     },
-    /// The system gives no more threads.
+    /// The system cannot start another thread.
     #[error("cannot start a thread: {0}")]
     Thread(#[from] std::io::Error),
 }
 
-/// Says how many environments there can be.
+/// Describes how many environments fit.
 fn advice(fit: usize) -> String {
     match fit {
         0 => "not even one fits".to_string(),
@@ -129,7 +129,7 @@ fn advice(fit: usize) -> String {
     }
 }
 
-/// Describes a number of values, as a shape where it is one.
+/// Describes a number of values, as a shape if it is one.
 fn shape(found: usize, [n, len]: [usize; 2]) -> String {
     match (len > 0 && found.is_multiple_of(len), n > 0 && found.is_multiple_of(n)) {
         (true, _) => format!("[{}, {len}] ({found} values)", found / len),

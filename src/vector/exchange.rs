@@ -1,7 +1,7 @@
-//! Resets and steps: environments go to the pool with their orders, and come back with their rows.
+//! Resets and steps: environments go to the pool with their commands, and return with their rows.
 //!
-//! An environment moves to a thread and back by value: a slot that is empty is in flight, so nothing can be called on it
-//! meanwhile, and no lock is held while it steps.
+//! An environment moves to a thread and back by value. An empty slot is in flight, so no call can reach it meanwhile, and no lock is held
+//! while it steps.
 
 use super::slot::{Order, Slot};
 use super::{Batch, Buffers, Failure, Seeds, VectorEnv, VectorError, of};
@@ -12,14 +12,13 @@ impl VectorEnv {
     /// Starts an episode in all environments. With one seed, environment i gets `seed + i`.
     ///
     /// # Errors
-    /// Environments in flight; a list of seeds of another length; a scene that diverges at once, after all have been
-    /// reset.
+    /// Environments in flight; a list of seeds of another length; a scene that diverges immediately, after all have been reset.
     pub fn reset<'s>(&mut self, seeds: impl Into<Seeds<'s>>) -> Result<Batch<'_>, VectorError> {
         self.reset_some(None, seeds.into())?;
         Ok(self.batch())
     }
 
-    /// Starts an episode in the environments that the mask marks. Returns the rows of all; those of the others stay.
+    /// Starts an episode in the environments that the mask marks. Returns the rows of all; the others' rows do not change.
     ///
     /// # Errors
     /// As [`VectorEnv::reset`]; a mask of another length.
@@ -28,8 +27,8 @@ impl VectorEnv {
         Ok(self.batch())
     }
 
-    /// Starts an episode in the environments that the mask marks, or in all, and writes the rows of all into the
-    /// caller's memory, as [`VectorEnv::step_into`] does.
+    /// Starts an episode in the environments that the mask marks, or in all, and writes the rows of all into the caller's buffers, as
+    /// [`VectorEnv::step_into`] does.
     ///
     /// # Errors
     /// As [`VectorEnv::reset_where`]; memory of another shape.
@@ -39,7 +38,7 @@ impl VectorEnv {
         seeds: impl Into<Seeds<'s>>,
         mut buffers: Buffers<'_>,
     ) -> Result<(), VectorError> {
-        // before anything is submitted: memory of a wrong shape leaves all environments as they are
+        // before anything is submitted: buffers of a wrong shape leave all environments unchanged
         buffers.check(self.len(), &self.layout)?;
         self.submit_resets(mask, seeds.into())?;
         self.collect(&mut buffers)?;
@@ -61,22 +60,22 @@ impl VectorEnv {
         if let Seeds::Each(list) = seeds {
             check_length("seeds", list.len(), [n, 1])?;
         }
-        // checked above, so that the mask has a place for every environment
+        // checked above, so the mask has an entry for every environment
         let marked = |env: usize| mask.is_none_or(|mask| mask[env]);
-        // lazily: the pool takes each slot as it hands it on, with no list in between
+        // lazily: the pool takes each slot as it passes it on, without a list in between
         let slots = self.slots.iter_mut().enumerate().filter(|(env, _)| marked(*env));
         let slots = slots.filter_map(|(env, place)| {
             let mut slot = place.take()?;
             slot.order = Order::Reset(seeds.of(env));
             Some(slot)
         });
-        // the caller has nothing to do until all are back, so it takes jobs as well
+        // the caller has nothing to do until all are back, so it runs jobs as well
         self.pool.submit(slots, true);
         self.in_flight = (0..n).filter(|env| marked(*env)).count();
         Ok(())
     }
 
-    /// Returns the first of the failures as an error.
+    /// Returns the first failure as an error.
     fn first_failure(&mut self) -> Result<(), VectorError> {
         if self.failures.is_empty() {
             Ok(())
@@ -89,17 +88,17 @@ impl VectorEnv {
     /// Applies an action in each environment ((N, len), environment after environment) and waits for all of them.
     ///
     /// # Errors
-    /// Actions of wrong shape or with numbers that are not finite, environments in flight or without a reset, which leave
-    /// everything untouched; an environment that panicked, after all have been stepped. One that diverges is not an error
-    /// but among [`Batch::failures`].
+    /// Actions of wrong shape or with numbers that are not finite, environments in flight or without a reset, which leave everything
+    /// untouched; an environment that panicked, after all have been stepped. An environment that diverges is not an error but one of
+    /// [`Batch::failures`].
     pub fn step(&mut self, actions: &[f32]) -> Result<Batch<'_>, VectorError> {
         self.submit_all(actions)?;
         self.collect_into_rows()?;
         Ok(self.batch())
     }
 
-    /// Applies an action in each environment and writes the results into the caller's memory; the
-    /// results of [`VectorEnv::infos`], [`VectorEnv::finals`] and [`VectorEnv::failures`] belong to the same step.
+    /// Applies an action in each environment and writes the results into the caller's buffers. The results of [`VectorEnv::infos`],
+    /// [`VectorEnv::finals`] and [`VectorEnv::failures`] belong to the same step.
     ///
     /// ```
     /// use babybench::vector::Buffers;
@@ -115,7 +114,7 @@ impl VectorEnv {
     /// ```
     ///
     /// # Errors
-    /// As [`VectorEnv::step`]; memory of another shape.
+    /// As [`VectorEnv::step`]; buffers of another shape.
     pub fn step_into(&mut self, actions: &[f32], mut buffers: Buffers<'_>) -> Result<(), VectorError> {
         buffers.check(self.len(), &self.layout)?;
         self.submit_all(actions)?;
@@ -123,7 +122,7 @@ impl VectorEnv {
     }
 
     fn submit_all(&mut self, actions: &[f32]) -> Result<(), VectorError> {
-        // all checks are made before anything is sent: an error leaves every environment where it was
+        // all checks precede sending, so an error leaves every environment unchanged
         self.check_home()?;
         self.set_actions(actions, None)?;
         self.in_flight = self.slots.len();
@@ -131,11 +130,10 @@ impl VectorEnv {
         Ok(())
     }
 
-    /// Hands environments an action each ([ids, len]) and returns at once. Without threads they are stepped by
-    /// [`VectorEnv::recv`].
+    /// Sends an action to each of the environments ([ids, len]) and returns immediately. Without threads, [`VectorEnv::recv`] steps them.
     ///
     /// # Errors
-    /// As [`VectorEnv::step`]; an environment that does not exist or is in flight. Nothing is sent then.
+    /// As [`VectorEnv::step`]; an environment that does not exist or is in flight. On errors nothing is sent.
     pub fn send(&mut self, actions: &[f32], ids: &[usize]) -> Result<(), VectorError> {
         let envs = self.len();
         if let Some(&env) = ids.iter().find(|&&env| env >= envs) {
@@ -149,12 +147,12 @@ impl VectorEnv {
         Ok(())
     }
 
-    /// Waits for `n` environments that were sent, whichever are ready first, and returns a row for each.
+    /// Waits for the first `n` of the sent environments that are ready, and returns a row for each.
     ///
     /// # Errors
-    /// More environments than are in flight, or none; an environment that panicked, which is not in flight any more.
+    /// More environments than are in flight, or none; an environment that panicked, which is then no longer in flight.
     pub fn recv(&mut self, n: usize) -> Result<Batch<'_>, VectorError> {
-        // the rows are written from the slots, both of which `self` owns
+        // rows are written from slots, and `self` owns both
         let mut rows = std::mem::take(&mut self.rows);
         let received = self.receive(n, &mut rows.buffers());
         self.rows = rows;
@@ -162,11 +160,11 @@ impl VectorEnv {
         Ok(self.batch())
     }
 
-    /// Waits for `n` environments as [`VectorEnv::recv`] does and writes their rows into the caller's memory, which has
-    /// room for `n`. Returns the ids of the environments, (n).
+    /// Waits for `n` environments as [`VectorEnv::recv`] does and writes their rows into the caller's buffers of `n` rows. Returns the
+    /// ids of the environments, (n).
     ///
     /// # Errors
-    /// As [`VectorEnv::recv`]; memory of another shape.
+    /// As [`VectorEnv::recv`]; buffers of another shape.
     pub fn recv_into(&mut self, n: usize, mut buffers: Buffers<'_>) -> Result<&[usize], VectorError> {
         self.check_sent(n)?;
         buffers.check(n, &self.layout)?;
@@ -198,13 +196,13 @@ impl VectorEnv {
         for row in 0..self.ids.len() {
             self.write(row, self.ids[row], out);
         }
-        // in the order of environments, whichever came back first: the same whatever the number of threads
+        // in the order of environments, not of their return, so the result does not depend on the number of threads
         self.failures.sort_by_key(|f| f.env);
         Ok(())
     }
 
     /// Seeds the generators of [`VectorEnv::sample_actions`] and of start actions: environment i gets `seed + i`. Under
-    /// `compat: reference` no reset does, as with [`Env::reset`](crate::Env::reset).
+    /// `compat: reference` no reset does this, as with [`Env::reset`](crate::Env::reset).
     ///
     /// # Errors
     /// Environments in flight.
@@ -216,7 +214,7 @@ impl VectorEnv {
         Ok(())
     }
 
-    /// Fills `actions` with a random action of each environment, (N, len), from their own generators.
+    /// Fills `actions` with a random action for each environment, (N, len), from their own generators.
     ///
     /// # Errors
     /// Environments in flight.
@@ -231,7 +229,7 @@ impl VectorEnv {
         Ok(())
     }
 
-    /// Begins a noise anew for each environment (where `mask` is true), with a seed drawn from that environment's generator of
+    /// Restarts the noise of each environment (where `mask` is true), with a seed drawn from that environment's generator of
     /// [`VectorEnv::sample_actions`].
     ///
     /// # Errors
@@ -246,7 +244,7 @@ impl VectorEnv {
         Ok(())
     }
 
-    /// Checks actions and hands them out: to the environments `ids`, or to all.
+    /// Checks actions and assigns them to the environments `ids`, or to all.
     fn set_actions(&mut self, actions: &[f32], ids: Option<&[usize]>) -> Result<(), VectorError> {
         let (n, len) = (ids.map_or(self.len(), <[usize]>::len), self.layout.action);
         check_length("actions", actions.len(), [n, len])?;
@@ -255,15 +253,15 @@ impl VectorEnv {
         self.sends += 1;
         for (row, action) in rows() {
             let env = env_of(row);
-            // an environment named twice would be in flight the second time; a mark with the number of the call finds
-            // it without clearing marks
+            // an environment named twice would be in flight the second time; a mark with the number of the call detects it without
+            // clearing marks
             let home = self.slots[env].as_mut().filter(|slot| slot.named != self.sends);
             let slot = home.ok_or(VectorError::InFlight { env })?;
             slot.named = self.sends;
             if !slot.can_step() {
                 return Err(VectorError::NotReset { env });
             }
-            // the quick test for the common case; `check_action` words the error
+            // the quick test for the common case; `check_action` returns the error
             if !action.iter().all(|v| v.is_finite()) {
                 slot.env.check_action(action).map_err(of(env))?;
             }
@@ -278,7 +276,7 @@ impl VectorEnv {
         Ok(())
     }
 
-    /// Checks that environments can be waited for.
+    /// Checks that enough environments are in flight to wait for.
     fn check_sent(&self, wanted: usize) -> Result<(), VectorError> {
         let in_flight = self.in_flight;
         if (1..=in_flight).contains(&wanted) {
@@ -298,14 +296,14 @@ impl VectorEnv {
     }
 
     fn collect_into_rows(&mut self) -> Result<(), VectorError> {
-        // the rows are filled from the slots, which `self` owns as well: taking them is the way around two borrows
+        // rows are filled from slots, which `self` owns as well: taking the rows avoids a double borrow
         let mut rows = std::mem::take(&mut self.rows);
         let collected = self.collect(&mut rows.buffers());
         self.rows = rows;
         collected
     }
 
-    /// Waits for all environments in flight, helping to run them, and writes a row for each environment.
+    /// Waits for all environments in flight, helps to run them, and writes a row for each environment.
     fn collect(&mut self, out: &mut Buffers<'_>) -> Result<(), VectorError> {
         self.begin_batch();
         let n = self.len();
@@ -316,12 +314,12 @@ impl VectorEnv {
             self.in_flight -= 1;
             self.slots[env] = Some(slot);
             if all && !self.deferred {
-                // at once, while its numbers are in this core's cache and other threads are still stepping
+                // immediately, while its numbers are in this core's cache and other threads still step
                 self.write(env, env, out);
             }
         }
         self.draw_eyes()?;
-        // a reset of some environments returns the rows of all; images drawn together exist only now
+        // a reset of some environments returns the rows of all, and images drawn together exist only now
         if !all || self.deferred {
             for env in 0..n {
                 self.write(env, env, out);
@@ -345,7 +343,7 @@ impl VectorEnv {
         }
         let ids = &self.ids;
         let slots = self.slots.iter_mut().flatten();
-        // one that diverged has no picture to draw
+        // a diverged environment has no picture to draw
         let envs = slots.filter(|slot| slot.env.ready() && ids.contains(&slot.index));
         let first = ids.first().copied().unwrap_or_default();
         draw_eyes(envs.map(|slot| &mut slot.env)).map_err(of(first))
@@ -359,7 +357,7 @@ impl VectorEnv {
         self.infos.write(row, slot.env.info(), slot.env.goal().terms);
         if let (Some(ends), Some(last)) = (&mut self.finals, &slot.last) {
             ends.ended[row] = slot.ended;
-            // the rows of the others keep what they had: nobody reads them
+            // the rows of the others keep their contents, which are not read
             if slot.ended {
                 ends.rows.buffers().write_whole(row, &last.observation());
                 ends.infos.write(row, &last.info, &last.terms);

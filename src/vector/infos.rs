@@ -3,22 +3,21 @@
 use crate::env::{BehaviorInfo, Info, Outcome};
 use crate::vector::rows::Layout;
 
-/// Information of all environments, as arrays of rows. The lists in the order of first touch, and names, are in
+/// Information of all environments, as arrays of rows. Lists in the order of first touch, and names, are in
 /// [`VectorEnv::env`](super::VectorEnv::env)`(i)?.info()`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Infos<'a> {
     /// Number of steps of each episode (N): see [`Info::steps`].
     pub steps: &'a [u64],
-    /// Which geoms the right and the left palm have touched, (N, 2, geoms), 1 or 0, if the behavior is `self_touch`.
+    /// Which geoms the right and the left palm have touched, (N, 2, geoms), 1 or 0, for the behavior `self_touch`.
     pub touches: Option<&'a [u8]>,
-    /// How often hands were in view, (N, 4), in the order of [`EYE_HAND_PAIRS`](crate::env::EYE_HAND_PAIRS), if the
-    /// behavior is `hand_regard`.
+    /// Steps with a hand in view, (N, 4), in the order of [`EYE_HAND_PAIRS`](crate::env::EYE_HAND_PAIRS), for the behavior `hand_regard`.
     pub regards: Option<&'a [u64]>,
-    /// The same, counted as BabyBench's page describes it: [`Regards::page`](crate::env::Regards::page).
+    /// The same, counted as the API page describes it: [`Regards::page`](crate::env::Regards::page).
     pub page_regards: Option<&'a [u64]>,
-    /// The same, counted as the kit computes it: [`Regards::kit`](crate::env::Regards::kit).
+    /// The same, counted as the starter kit computes it: [`Regards::kit`](crate::env::Regards::kit).
     pub kit_regards: Option<&'a [u64]>,
-    /// How old the pictures are that the eyes show (N), s, if there is a [`vision_rate`](crate::Config::vision_rate).
+    /// Age of the pictures of the eyes (N), s, with a [`vision_rate`](crate::Config::vision_rate).
     pub vision_age: Option<&'a [f64]>,
     /// Success and failure (N) of tasks that report them.
     pub outcomes: Option<&'a [Outcome]>,
@@ -32,7 +31,7 @@ pub(super) struct InfoRows {
     layout: Layout,
     steps: Vec<u64>,
     touches: Vec<u8>,
-    /// By compat, the page's, the kit's.
+    /// The counters by `compat`, the page's, and the kit's.
     regards: [Vec<u64>; 3],
     ages: Vec<f64>,
     outcomes: Vec<Outcome>,
@@ -68,7 +67,7 @@ impl InfoRows {
             }
         }
         if self.layout.ages {
-            // a reset looks
+            // a reset samples
             self.ages[row] = info.details.vision_age.unwrap_or_default();
         }
         if self.layout.regards {

@@ -1,4 +1,4 @@
-//! Pictures of environments that draw them when somebody asks for them.
+//! Pictures of environments that draw them on request.
 
 use super::exchange::panicked;
 use super::slot::Order;
@@ -6,9 +6,9 @@ use super::{Batch, Buffers, VectorEnv, VectorError, of};
 use crate::env::draw_eyes;
 
 impl VectorEnv {
-    /// Draws what the eyes of the environments in the last batch see, on all threads, where that waits for somebody who asks
-    /// ([`Config::vision_lazy`](crate::Config::vision_lazy)), and returns the batch with it. Otherwise the batch is as it was. An episode that
-    /// has ended in [`AutoresetMode::SameStep`](super::AutoresetMode) has drawn its last picture.
+    /// Draws the pictures of the last batch that are still to be drawn ([`Config::vision_lazy`](crate::Config::vision_lazy)), on all
+    /// threads, and returns the batch with them. Otherwise the batch does not change. An episode that ended in
+    /// [`AutoresetMode::SameStep`](super::AutoresetMode) has already drawn its last picture.
     ///
     /// ```
     /// use babybench::{Blueprint, Config, VectorEnv, VectorOptions};
@@ -24,7 +24,7 @@ impl VectorEnv {
     /// ```
     ///
     /// # Errors
-    /// An environment of the batch that has been sent on; one that panicked; as the renderer.
+    /// An environment of the batch that has been sent again, or that panicked; errors of the renderer.
     pub fn look(&mut self) -> Result<Batch<'_>, VectorError> {
         let mut rows = std::mem::take(&mut self.rows);
         let looked = self.look_for(&mut rows.buffers());
@@ -33,17 +33,17 @@ impl VectorEnv {
         Ok(self.batch())
     }
 
-    /// Draws as [`VectorEnv::look`] does, and writes the images into the caller's memory, which has a row for each environment of the last
-    /// batch. What else is in it stays as it is.
+    /// Draws as [`VectorEnv::look`] does, and writes the images into the caller's buffers, with a row for each environment of the last
+    /// batch. Other buffers do not change.
     ///
     /// # Errors
-    /// As [`VectorEnv::look`]; memory of another shape.
+    /// As [`VectorEnv::look`]; buffers of another shape.
     pub fn look_into(&mut self, mut buffers: Buffers<'_>) -> Result<(), VectorError> {
         buffers.check(self.ids.len(), &self.layout)?;
         self.look_for(&mut buffers)
     }
 
-    /// Returns whether pictures wait for [`VectorEnv::look`].
+    /// Returns whether there are pictures for [`VectorEnv::look`] to draw.
     pub fn unseen(&self) -> bool {
         self.unseen
     }
@@ -52,7 +52,7 @@ impl VectorEnv {
         if !self.lazy {
             return Ok(());
         }
-        // rows stand in the order in which environments came back: the lowest number is the same with any number of threads
+        // rows are in the order in which environments returned; the lowest number does not depend on the number of threads
         let away = self.ids.iter().filter(|&&env| self.slots[env].is_none()).min();
         if let Some(&env) = away {
             return Err(VectorError::InFlight { env });
@@ -62,7 +62,7 @@ impl VectorEnv {
         } else if self.in_flight == 0 {
             self.look_on_threads()?;
         } else {
-            // those in flight come back through the same queue: it is not for others now
+            // environments in flight return through the same queue, so no others may use it now
             for &env in &self.ids {
                 let Some(slot) = &mut self.slots[env] else { continue };
                 slot.env.look().map_err(of(env))?;

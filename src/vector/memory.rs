@@ -1,10 +1,10 @@
-//! Estimates the memory that environments take, before they are made.
+//! Estimates of the memory of environments, before they are made.
 
 use crate::env::Env;
 use crate::vector::rows::Layout;
 use crate::vector::{AutoresetMode, VectorError};
 
-/// Where the system does not tell how much memory it has.
+/// The limit on systems that do not report their memory.
 const DEFAULT_LIMIT: u64 = if cfg!(target_pointer_width = "32") {
     2 << 30
 } else {
@@ -13,19 +13,18 @@ const DEFAULT_LIMIT: u64 = if cfg!(target_pointer_width = "32") {
 
 /// Estimates the memory of a further environment, bytes, from one that is built.
 ///
-/// Sizes are linear in what there is of each thing. The factors were measured; a test holds the sum against the
-/// allocator.
+/// Sizes are linear in the number of each kind of element. The factors were measured; a test compares the sum with the allocator.
 pub(super) fn estimate(env: &Env, layout: &Layout, mode: AutoresetMode) -> u64 {
     let model = env.model();
-    // the array of the vector and the vector of the sense; with the ends of episodes, another of each
+    // the array of the vector and the vector of the sense; twice with the ends of episodes
     let copies = if mode == AutoresetMode::SameStep { 4 } else { 2 };
     let rows = copies * layout.row_bytes();
-    // what decides how the run goes on, and where the last step began; engines and the memory of pictures are shared
+    // what decides how the run continues, and the arguments of the last step; engines and buffers of pictures are shared
     let state = 4_000 + 64 * model.nv + 50 * model.nbody();
     let computed = if env.shares() {
         0
     } else {
-        // with room for contacts and their rows
+        // with space for contacts and their rows
         300_000 + 300 * model.ngeom() + 1_600 * model.nv
     };
     let skin = env
@@ -35,7 +34,7 @@ pub(super) fn estimate(env: &Env, layout: &Layout, mode: AutoresetMode) -> u64 {
     (rows + state + computed + skin + env.transform_memory()) as u64
 }
 
-/// Refuses more environments than fit.
+/// Returns an error if the environments do not fit.
 pub(super) fn check(envs: usize, each: u64, max_memory: Option<u64>) -> Result<(), VectorError> {
     let limit = max_memory.or_else(available).unwrap_or(DEFAULT_LIMIT);
     let bytes = each.saturating_mul(envs as u64);
@@ -52,7 +51,7 @@ pub(super) fn check(envs: usize, each: u64, max_memory: Option<u64>) -> Result<(
     })
 }
 
-/// Returns the memory that the system has available, and the container lets us have, bytes, where they tell.
+/// Returns the memory available from the system and the container, bytes, if they report it.
 fn available() -> Option<u64> {
     if !cfg!(target_os = "linux") {
         return None;
@@ -63,7 +62,7 @@ fn available() -> Option<u64> {
     let system = kib.saturating_mul(1024);
     let number = |name| {
         let text = std::fs::read_to_string(format!("/sys/fs/cgroup/{name}")).ok()?;
-        text.trim().parse::<u64>().ok() // "max" where there is no limit
+        text.trim().parse::<u64>().ok() // "max" means no limit
     };
     let container = number("memory.max").map(|max| max.saturating_sub(number("memory.current").unwrap_or(0)));
     Some(container.map_or(system, |container| container.min(system)))

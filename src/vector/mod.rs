@@ -16,8 +16,8 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! Every environment goes its own way: what it returns has the same bits as if it were alone, whatever the number of
-//! threads and the batch. With the feature `parallel`, threads step them; without, the caller does.
+//! Environments are independent: each returns the bits that it returns alone, whatever the number of threads and the batch. With the
+//! feature `parallel`, threads step them; without it, the caller does.
 
 mod batch;
 mod buffers;
@@ -47,10 +47,10 @@ use infos::InfoRows;
 use rows::{Layout, Rows};
 use slot::Slot;
 
-/// Many environments, stepped together or as they come.
+/// Many environments, stepped together or in the order in which they finish.
 ///
-/// [`VectorEnv::step`] steps all of them and waits for all. [`VectorEnv::send`] and [`VectorEnv::recv`] do it in two
-/// halves, and whoever is ready first is returned first, so that a slow environment does not hold the others:
+/// [`VectorEnv::step`] steps all of them and waits for all. [`VectorEnv::send`] and [`VectorEnv::recv`] are its two halves. The first
+/// environment that is ready returns first, so a slow one does not hold up the others:
 ///
 /// ```
 /// use babybench::{Blueprint, Config, VectorEnv, VectorOptions};
@@ -74,14 +74,14 @@ pub struct VectorEnv {
     slots: Vec<Option<Box<Slot>>>,
     pool: Pool<Slot>,
     in_flight: usize,
-    /// Number of calls of `send`, so that an environment that is named twice is found.
+    /// Number of calls of `send`, to detect an environment that is named twice.
     sends: u64,
     threads: usize,
     clipped: Option<ClippedThreads>,
     autoreset: AutoresetMode,
     /// Whether the eyes of all environments are drawn together.
     deferred: bool,
-    /// Whether the eyes of environments are drawn when somebody asks for it.
+    /// Whether the eyes of environments are drawn on request.
     lazy: bool,
     /// Whether the rows are still without pictures.
     unseen: bool,
@@ -116,7 +116,7 @@ impl VectorEnv {
     /// Makes `n` environments of one blueprint.
     ///
     /// # Errors
-    /// None or more than memory holds; errors of [`Blueprint::env`]; the system gives no threads.
+    /// No environments, or more than memory holds; errors of [`Blueprint::env`]; a thread that the system cannot start.
     pub fn new(blueprint: &Blueprint, n: usize, options: VectorOptions) -> Result<Self, VectorError> {
         Self::build(n, |_| blueprint, options)
     }
@@ -154,7 +154,7 @@ impl VectorEnv {
         let (threads, clipped) = options::threads(options.threads, n);
         Ok(Self {
             slots: slots.collect(),
-            // a vector of one thread has none beside the caller's
+            // a vector of one thread uses only the caller's
             pool: Pool::new(if threads > 1 { threads } else { 0 }, n)?,
             in_flight: 0,
             sends: 0,
@@ -194,12 +194,12 @@ impl VectorEnv {
         self.threads
     }
 
-    /// Returns why there are fewer threads than asked for, if there are.
+    /// Returns the reason why there are fewer threads than requested, if so.
     pub fn clipped_threads(&self) -> Option<ClippedThreads> {
         self.clipped
     }
 
-    /// Returns when an episode follows another.
+    /// Returns when the next episode starts.
     pub fn autoreset(&self) -> AutoresetMode {
         self.autoreset
     }
@@ -239,29 +239,29 @@ impl VectorEnv {
         })
     }
 
-    /// Returns the environments that could not go on in the last step.
+    /// Returns the environments that could not continue in the last step.
     pub fn failures(&self) -> &[Failure] {
         &self.failures
     }
 }
 
-/// Makes an environment for a vector.
+/// Creates an environment for a vector.
 fn make(blueprint: &Blueprint) -> Result<Env, EnvError> {
     let mut env = blueprint.env()?;
     env.senses_mut().set_vision_threads(1); // the vector has threads of its own
-    // a GPU draws what the environments see when all have stepped: each needs its poses until then
+    // a GPU draws the eyes after all have stepped, so each environment keeps its poses until then
     if !on_gpu(&env) {
         env.share();
     }
     Ok(env)
 }
 
-/// Tells whether a GPU draws what the eyes see.
+/// Returns whether a GPU draws the eyes.
 fn on_gpu(env: &Env) -> bool {
     env.senses().vision().is_some() && env.config().renderer == RendererKind::Wgpu
 }
 
-/// Makes the environments after the first, whose spaces must be those of the first.
+/// Creates the environments after the first. Their spaces must equal the first's.
 fn alike(first: Env, n: usize, make: impl Fn(usize) -> Result<Env, VectorError>) -> Result<Vec<Env>, VectorError> {
     let spaces = first.observation_space();
     let mut envs = vec![first];
@@ -280,7 +280,7 @@ fn alike(first: Env, n: usize, make: impl Fn(usize) -> Result<Env, VectorError>)
     Ok(envs)
 }
 
-/// Says of which environment an error is.
+/// Adds the number of the environment to an error.
 fn of(env: usize) -> impl FnOnce(EnvError) -> VectorError {
     move |source| VectorError::Env {
         env,
@@ -288,10 +288,10 @@ fn of(env: usize) -> impl FnOnce(EnvError) -> VectorError {
     }
 }
 
-/// How the spaces of an environment differ from those of others: in what, theirs, its own.
+/// A difference between the spaces of an environment and those of others: the space, theirs, its own.
 type Difference = (String, String, String);
 
-/// Returns how an environment differs from those whose arrays it is to share.
+/// Returns how an environment differs from those with which it is to share arrays.
 fn difference(a: &BoxSpace, spaces: &[ObservationSpace], env: &Env) -> Option<Difference> {
     let b = env.action_space();
     if a.len() != b.len() {

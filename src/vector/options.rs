@@ -1,16 +1,16 @@
-//! How a vector is built and reset.
+//! Options of a vector and its resets.
 
 use std::fmt;
 
 use crate::threads::PARALLEL;
 
-/// When an environment whose episode has ended starts the next one, as in Gymnasium's `AutoresetMode`.
+/// When an environment starts the next episode, as in Gymnasium's `AutoresetMode`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum AutoresetMode {
-    /// The step after the last one resets: its action is ignored, and it returns the first observation of the next episode.
+    /// The step after the last one resets. It ignores its action and returns the first observation of the next episode.
     #[default]
     NextStep,
-    /// The last step resets too: it returns the first observation of the next episode, and keeps the last one of the old
+    /// The last step resets. It returns the first observation of the next episode, and keeps the last one of the old
     /// ([`Batch::finals`](super::Batch::finals)).
     SameStep,
     /// The caller resets ([`VectorEnv::reset_where`](super::VectorEnv::reset_where)).
@@ -20,34 +20,34 @@ pub enum AutoresetMode {
 /// The options of a vector.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct VectorOptions {
-    /// When an episode follows another.
+    /// When the next episode starts.
     pub autoreset: AutoresetMode,
     /// Number of threads that step environments; 0 means one for each core. Without the feature `parallel`, and on
     /// wasm32, it is one. Results do not depend on it.
     pub threads: usize,
-    /// Memory that the environments may take, bytes. By default that which the system has available, where it tells
-    /// (Linux), and 64 GiB elsewhere (2 GiB where addresses have 32 bits).
+    /// Memory that the environments may take, bytes. By default the memory that the system reports as available (Linux), and otherwise 64
+    /// GiB (2 GiB with 32-bit addresses).
     pub max_memory: Option<u64>,
 }
 
-/// Threads beyond this many for each core only take turns.
+/// The number of threads per core beyond which threads only take turns.
 const THREADS_PER_CORE: usize = 4;
 
 /// A notice that fewer threads were started than asked for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ClippedThreads {
-    /// Number of threads asked for.
+    /// Number of threads requested.
     pub wanted: usize,
-    /// Number of threads there are.
+    /// Number of threads started.
     pub given: usize,
-    /// Why more would not help.
+    /// The reason why more would not help.
     pub because: ThreadLimit,
 }
 
 /// The reason why the number of threads is limited.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ThreadLimit {
-    /// A thread steps one environment at a time, and there are no more.
+    /// Each thread steps one environment at a time, and there are no more environments.
     Environments,
     /// There are no more cores.
     Cores,
@@ -67,7 +67,7 @@ impl fmt::Display for ClippedThreads {
     }
 }
 
-/// Returns how many threads are of use, and whether that is fewer than wanted.
+/// Returns how many threads are useful, with a notice if that is fewer than requested.
 pub(super) fn threads(wanted: usize, envs: usize) -> (usize, Option<ClippedThreads>) {
     let cores = if PARALLEL {
         std::thread::available_parallelism().map_or(1, usize::from)

@@ -10,7 +10,7 @@ use crate::vector::Buffers;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct Layout {
     pub action: usize,
-    /// Length of each entry of the observation, in the order of [`ObservationEntry::ALL`]; `None` for those that are not there.
+    /// Length of each entry of the observation, in the order of [`ObservationEntry::ALL`]; `None` for missing entries.
     pub entries: [Option<usize>; ObservationEntry::ALL.len()],
     /// Number of touch sensors.
     pub sensors: usize,
@@ -50,7 +50,7 @@ impl Layout {
         self.entries[at?]
     }
 
-    /// Returns the size of a row of everything, bytes.
+    /// Returns the size of a row of all arrays, bytes.
     pub fn row_bytes(&self) -> usize {
         let entries = ObservationEntry::ALL.iter().zip(self.entries);
         let observed: usize = entries
@@ -64,7 +64,7 @@ impl Layout {
 /// The vector's own arrays.
 #[derive(Debug, Default)]
 pub(super) struct Rows {
-    /// The arrays of the entries, in the order of [`ObservationEntry::ALL`]; `None` for those that are not there.
+    /// The arrays of the entries, in the order of [`ObservationEntry::ALL`]; `None` for missing entries.
     entries: Vec<Option<Array>>,
     /// Lengths of their rows.
     layout: Layout,
@@ -92,7 +92,7 @@ impl Rows {
         }
     }
 
-    /// Returns the arrays for writing, those of entries that are there.
+    /// Returns the arrays of existing entries, for writing.
     pub fn buffers(&mut self) -> Buffers<'_> {
         let mut arrays = self.entries.iter_mut();
         Buffers {
@@ -104,7 +104,7 @@ impl Rows {
         }
     }
 
-    /// Returns the observations of the first `n` rows, with images or without.
+    /// Returns the observations of the first `n` rows, with or without images.
     pub fn observation(&self, n: usize, images: bool) -> Observation<'_> {
         let mut arrays = self.entries.iter().zip(self.layout.entries);
         Observation::from_fn(|entry| {

@@ -3,7 +3,7 @@
 /// Seeds of all environments, as Gymnasium's `reset(seed=...)` takes them.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Seeds<'a> {
-    /// None: every environment goes on with its generator.
+    /// No seed: every environment continues with its generator.
     #[default]
     Keep,
     /// One seed: environment i gets the seed plus i.

@@ -16,8 +16,7 @@ impl VectorEnv {
         Ok(&self.slot(env)?.env)
     }
 
-    /// Returns an environment, to change what it is in. What it returns by itself is not in the rows of the vector before
-    /// the next step.
+    /// Returns an environment, to change its state. Results of direct calls are not in the rows of the vector before the next step.
     ///
     /// # Errors
     /// [`VectorError::Unknown`], [`VectorError::InFlight`].
@@ -25,8 +24,8 @@ impl VectorEnv {
         Ok(&mut self.slot_mut(env)?.env)
     }
 
-    /// Returns the information of the end of an environment's last episode, with names and lists in order, if it ended in
-    /// the last step and the mode is [`AutoresetMode::SameStep`](super::AutoresetMode).
+    /// Returns the information at the end of an environment's last episode, with names and lists in order, if it ended in the last step
+    /// and the mode is [`AutoresetMode::SameStep`](super::AutoresetMode).
     ///
     /// # Errors
     /// [`VectorError::Unknown`], [`VectorError::InFlight`].
@@ -49,7 +48,7 @@ impl VectorEnv {
         self.env_mut(env)?.lock(target, angle).map_err(of(env))
     }
 
-    /// Takes the lock off a joint, or all joints of a part, of one environment: see [`Env::unlock`].
+    /// Unlocks a joint, or all joints of a part, of one environment: see [`Env::unlock`].
     ///
     /// # Errors
     /// As [`Env::unlock`]; [`VectorError::Unknown`], [`VectorError::InFlight`].
@@ -57,7 +56,7 @@ impl VectorEnv {
         self.env_mut(env)?.unlock(target).map_err(of(env))
     }
 
-    /// Returns the present moment of one environment: see [`Env::snapshot`].
+    /// Takes a snapshot of one environment: see [`Env::snapshot`].
     ///
     /// # Errors
     /// [`VectorError::Unknown`], [`VectorError::InFlight`].
@@ -65,7 +64,7 @@ impl VectorEnv {
         Ok(self.env(env)?.snapshot())
     }
 
-    /// Takes one environment back to a snapshot, of itself or of another of the same configuration: see [`Env::restore`].
+    /// Restores a snapshot in one environment, of itself or of another with the same configuration: see [`Env::restore`].
     ///
     /// # Errors
     /// As [`Env::restore`]; [`VectorError::Unknown`], [`VectorError::InFlight`].
@@ -74,12 +73,12 @@ impl VectorEnv {
         restored.map_err(|e| of(env)(e.into()))
     }
 
-    /// Lets the MIMo of one environment grow between two episodes: see [`Env::set_age`]. With
+    /// Changes the age of one environment's MIMo between two episodes: see [`Env::set_age`]. With
     /// [`Config::touch_grows`](crate::Config::touch_grows) the spaces are the same at every age.
     ///
     /// # Errors
-    /// As [`Env::set_age`]; [`VectorError::Grown`] where the spaces would differ; [`VectorError::Unknown`],
-    /// [`VectorError::InFlight`]. Nothing is changed then.
+    /// As [`Env::set_age`]; [`VectorError::Grown`] if the spaces would differ; [`VectorError::Unknown`], [`VectorError::InFlight`]. They
+    /// change nothing.
     pub fn set_age(&mut self, env: usize, age: Option<f64>) -> Result<(), VectorError> {
         let grown = self.env(env)?.grown(age).map_err(of(env))?;
         match difference(&self.action_space, &self.observation_space, &grown) {
@@ -96,7 +95,7 @@ impl VectorEnv {
         }
     }
 
-    /// Lets the MIMo of one environment make another face: see [`Env::swap_facial_expression`].
+    /// Changes the face of one environment's MIMo: see [`Env::swap_facial_expression`].
     ///
     /// # Errors
     /// As [`Env::swap_facial_expression`]; [`VectorError::Unknown`], [`VectorError::InFlight`].
@@ -105,8 +104,7 @@ impl VectorEnv {
         swapped.map_err(of(env))
     }
 
-    /// Puts the scene of one environment at positions and velocities in the middle of an episode: see
-    /// [`Env::set_state`].
+    /// Moves the scene of one environment to positions and velocities in the middle of an episode: see [`Env::set_state`].
     ///
     /// # Errors
     /// As [`Env::set_state`]; [`VectorError::Unknown`], [`VectorError::InFlight`].

@@ -1,4 +1,4 @@
-//! A slot of the vector: an environment, its next order, and the outcome.
+//! A slot of the vector: an environment, its next command, and the outcome.
 
 use std::any::Any;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -8,35 +8,35 @@ use crate::threads::Job;
 use crate::vector::rows::{Layout, Rows};
 use crate::vector::{AutoresetMode, make};
 
-/// The next order of an environment.
+/// The next command of an environment.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Order {
-    /// Apply [`Slot::action`], or start the next episode where the mode says so.
+    /// Apply [`Slot::action`], or start the next episode if the mode says so.
     Step,
-    /// Start an episode, with a seed or without.
+    /// Start an episode, with or without a seed.
     Reset(Option<u64>),
-    /// Draw what the eyes see, if that waits.
+    /// Draw the eyes, if their picture is still to be drawn.
     Look,
 }
 
-/// An environment on its way between the vector and the threads.
+/// An environment that moves between the vector and the threads.
 pub(super) struct Slot {
     pub index: usize,
     pub env: Env,
     pub order: Order,
     pub action: Vec<f32>,
     pub mode: AutoresetMode,
-    /// The last call of `send` that named it.
+    /// The number of the last call of `send` that named the environment.
     pub named: u64,
     /// Whether there was a reset.
     pub started: bool,
     pub reward: f64,
     pub terminated: bool,
     pub truncated: bool,
-    /// Whether [`Slot::last`] is that of an episode that ended in the last step.
+    /// Whether [`Slot::last`] belongs to an episode that ended in the last step.
     pub ended: bool,
     pub last: Option<Last>,
-    /// Why the last step or reset failed.
+    /// The error of the last step or reset.
     pub failure: Option<EnvError>,
     /// The message of the panic that broke the environment.
     pub panicked: Option<String>,
@@ -72,12 +72,12 @@ impl Slot {
         }
     }
 
-    /// Returns whether the episode is over: a step now is a reset, or an error.
+    /// Returns whether the episode is over, so that a step is a reset or an error.
     pub fn over(&self) -> bool {
         !self.env.ready() || self.env.over()
     }
 
-    /// Returns whether a step would mean something.
+    /// Returns whether a step is valid.
     pub fn can_step(&self) -> bool {
         let resets = self.started && self.mode != AutoresetMode::Disabled;
         self.panicked.is_none() && (self.env.ready() || resets)
@@ -85,7 +85,7 @@ impl Slot {
 
     fn perform(&mut self) {
         if !matches!(self.order, Order::Look) {
-            // a look leaves the results of the last step unchanged
+            // reading leaves the results of the last step unchanged
             (self.reward, self.terminated, self.truncated) = (0.0, false, false);
             (self.ended, self.failure) = (false, None);
         }
@@ -137,7 +137,7 @@ impl Slot {
         }
     }
 
-    /// Rebuilds an environment after a panic, since its state may be inconsistent.
+    /// Rebuilds an environment after a panic, because its state may be inconsistent.
     fn revive(&mut self) -> Result<(), EnvError> {
         if self.panicked.is_some() {
             let deferred = self.env.senses().vision_is_deferred();
@@ -187,7 +187,7 @@ impl Last {
     }
 }
 
-/// Copies information into memory that has room for all that the original has room for.
+/// Copies information into an allocation with the original's capacity.
 fn copy_info(from: &Info, to: &mut Info) {
     to.steps = from.steps;
     match (&from.behavior, &mut to.behavior) {

@@ -39,10 +39,10 @@ impl EvaluationLog {
         self.info.is_empty()
     }
 
-    /// Writes `evaluation_N.pkl`, `evaluation_N.jsonl` and, with the feature `npz`, `evaluation_N.npz` into the folder
-    /// of a run. A line of the `.jsonl` is the information of a step with its details ([`Info::to_detailed_json`]). The
-    /// archive holds `qpos`, `steps` and, by behavior, the four counters and the angles (`gaze_angles`, rad) or, for
-    /// each hand, the touched geoms (`*_touches`, those of step t at `*_ptr[t]..*_ptr[t+1]`).
+    /// Writes `evaluation_N.pkl`, `evaluation_N.jsonl` and, with the feature `npz`, `evaluation_N.npz` into the folder of a run. A line
+    /// of the `.jsonl` is the information of a step with its details ([`Info::to_detailed_json`]). The archive holds `qpos`, `steps` and,
+    /// by behavior, the four counters and the angles (`gaze_angles`, rad) or, for each hand, the touched geoms (`*_touches`, with those
+    /// of step t at `*_ptr[t]..*_ptr[t+1]`).
     ///
     /// # Errors
     /// Errors of the file system.
@@ -113,12 +113,12 @@ impl EvaluationLog {
     /// Reads `evaluation_N.pkl`, ours or the kit's.
     ///
     /// # Errors
-    /// No log, a file that is none, one that is damaged.
+    /// A missing file, or one that is damaged or not a log.
     pub fn read(path: impl AsRef<Path>) -> Result<Self, LogError> {
         Self::read_with(path, &Limits::DEFAULT)
     }
 
-    /// Reads `evaluation_N.pkl` as [`EvaluationLog::read`] does, within other limits than the default ones.
+    /// Reads `evaluation_N.pkl` as [`EvaluationLog::read`] does, within limits of the caller's choice.
     ///
     /// # Errors
     /// As [`EvaluationLog::read`].

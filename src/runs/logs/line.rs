@@ -1,20 +1,20 @@
-//! A record as a line of JSON, byte for byte as `Detailed` serializes it. A long log has millions of them, so names and
-//! small numbers, of which they mostly consist, are formatted once.
+//! Records as lines of JSON, byte for byte as `Detailed` serializes them. A long log has millions of them, so names and small numbers,
+//! their main contents, are formatted once.
 
 use std::io;
 
 use crate::env::{Info, InfoValue, PARTS, PartNames, Regards, STEPS};
 use crate::json;
 
-/// Makes lines.
+/// A writer of lines.
 pub(super) struct LineMaker<'n> {
     names: Option<&'n PartNames>,
-    /// Names of geoms as JSON, by geom, as far as they were needed.
+    /// Names of geoms as JSON, by geom, filled on demand.
     quoted: Vec<String>,
 }
 
 impl<'n> LineMaker<'n> {
-    /// Makes lines in which touched parts have names, if there are any.
+    /// Creates a writer of lines in which touched parts have names, if there are any.
     pub fn new(names: Option<&'n PartNames>) -> Self {
         let quoted = Vec::new();
         Self { names, quoted }
@@ -64,7 +64,7 @@ impl<'n> LineMaker<'n> {
     fn name(&mut self, out: &mut Vec<u8>, geom: usize, names: &PartNames) {
         match self.quoted.get(geom) {
             Some(name) => out.extend_from_slice(name.as_bytes()),
-            // whatever numbers a log has, names are kept of few
+            // only a few names are kept, whatever numbers a log has
             None if geom < KEPT => {
                 let more = self.quoted.len()..=geom;
                 self.quoted.extend(more.map(|geom| json::text(&&*names.get(geom))));

@@ -1,6 +1,6 @@
-//! `training.jsonl`: the records of a training log as lines of JSON, for everyone who reads no pickles.
+//! `training.jsonl`: the records of a training log as lines of JSON, for programs that read no pickles.
 //!
-//! Lines that are on disk are not made again: a new file is the old one and the new lines.
+//! Lines on disk are not formatted again: a new file consists of the old one and the new lines.
 
 use std::collections::VecDeque;
 use std::fs::{File, Metadata};
@@ -14,10 +14,10 @@ use super::line::LineMaker;
 use crate::env::{Info, PartNames};
 use crate::files::{self, replace_file_with};
 
-/// Lines are written, and read, when there are more bytes of them than this.
+/// Size in bytes from which on buffered lines are written, and read.
 const AT_ONCE: usize = 1 << 16;
 
-/// A file that this log has written or looked through.
+/// A file that this log has written or read.
 #[derive(Clone, Debug)]
 struct Known {
     records: usize,
@@ -34,20 +34,20 @@ impl Known {
         }
     }
 
-    /// Returns whether a file is still the same, as far as one can tell without reading it.
+    /// Returns whether a file is unchanged, as far as its metadata show.
     fn is(&self, meta: &Metadata) -> bool {
         meta.is_file() && meta.len() == self.length && meta.modified().ok() == self.modified
     }
 }
 
-/// The records of a log that is resumed: their number and the first of them.
+/// The records of a resumed log: their number and the first of them.
 #[derive(Clone, Debug)]
 struct Resumed {
     records: usize,
     first: Info,
 }
 
-/// The known contents of the `.jsonl` file next to a training log.
+/// The known contents of the `.jsonl` file beside a training log.
 #[derive(Debug, Default)]
 pub(super) struct Lines {
     /// For the names of touched parts.
@@ -79,7 +79,7 @@ impl Lines {
     pub fn set_names(&mut self, names: Option<PartNames>) {
         if self.names != names {
             self.names = names;
-            // lines with other names are made again
+            // lines with other names are formatted again
             self.known = Mutex::default();
         }
     }
@@ -95,10 +95,10 @@ impl Lines {
         self.known.lock().unwrap_or_else(PoisonError::into_inner).clone()
     }
 
-    /// Brings the file up to date with `total` records, of which `recent` are the last and `visit` hands out all.
+    /// Updates the file to `total` records. `recent` are the last of them, and `visit` yields all.
     ///
     /// # Errors
-    /// Errors of the file system; what `visit` says.
+    /// Errors of the file system and of `visit`.
     pub fn save(
         &self,
         path: &Path,
@@ -125,7 +125,7 @@ impl Lines {
         Ok(())
     }
 
-    /// Looks whether a file holds the lines of a log that is resumed: as many, with the same first and last one.
+    /// Returns whether a file holds the lines of a resumed log: the same number, with the same first and last one.
     fn adopt(&self, path: &Path, resumed: &Resumed, last: &Info) -> io::Result<Option<Known>> {
         let mut file = files::open(path)?;
         let meta = file.metadata()?;
@@ -148,13 +148,13 @@ impl Lines {
         Ok((same && breaks(&mut file)? == resumed.records).then(|| Known::of(resumed.records, &meta)))
     }
 
-    /// Replaces a file by itself and more lines.
+    /// Replaces a file by its contents and more lines.
     fn append<'r>(&self, path: &Path, known: &Known, more: impl ExactSizeIterator<Item = &'r Info>) -> io::Result<()> {
         if more.len() == 0 {
             return Ok(());
         }
         replace_file_with(path, |file| {
-            // the system copies this by itself where it can
+            // the system copies this itself if it can
             let copied = io::copy(&mut files::open(path)?, file)?;
             if copied != known.length {
                 return Err(io::Error::other("it is a different file now"));
@@ -165,7 +165,7 @@ impl Lines {
         })
     }
 
-    /// Writes all lines, of the records that `visit` hands out.
+    /// Writes the lines of all records that `visit` yields.
     pub fn write_all(
         &self,
         path: &Path,
@@ -197,7 +197,7 @@ impl Lines {
     }
 }
 
-/// Writes lines, which are not all in memory at the same time: names make them long.
+/// Writes lines piece by piece, because names make them long.
 struct Writer<'l> {
     maker: LineMaker<'l>,
     file: &'l mut File,
@@ -226,7 +226,7 @@ impl Writer<'_> {
 
 /// Counts the line breaks of a file.
 fn breaks(file: &mut File) -> io::Result<usize> {
-    // in pieces whose number of line breaks is a byte, many at a time
+    // in pieces whose number of line breaks fits a byte, many at a time
     let piece = |bytes: &[u8]| usize::from(bytes.iter().map(|&byte| u8::from(byte == b'\n')).sum::<u8>());
     let (mut count, mut buffer) = (0, vec![0; AT_ONCE]);
     loop {

@@ -1,4 +1,4 @@
-//! Records out of pickles.
+//! Records from pickles.
 
 use std::collections::VecDeque;
 use std::mem::{Discriminant, discriminant};
@@ -11,11 +11,11 @@ use crate::formats::pickle::{self, Node, PickleError, Root, Value};
 use crate::limits::Limits;
 use crate::text::quoted;
 
-/// A value of a pickle, in any form.
+/// A value of a pickle.
 trait Field: Copy {
     fn is_dict(self) -> bool;
     fn get(self, key: &str) -> Option<Self>;
-    /// Returns a whole number that is not negative.
+    /// Returns a nonnegative whole number.
     fn count(self) -> Option<u64>;
     /// Returns a number; 0 or 1 for false and true.
     fn number(self) -> Option<f64>;
@@ -87,11 +87,11 @@ impl Field for Node<'_, '_> {
     }
 }
 
-/// A dictionary that is read as a record; unknown keys are ignored.
+/// A reader of dictionaries as records, which ignores unknown keys.
 struct Dict<'l, F> {
     value: F,
     limits: &'l Limits,
-    /// The name of the last task that was read, which one allocation serves for all records.
+    /// The name of the last task, so that all records share one allocation.
     task: &'l mut Option<Arc<str>>,
 }
 
@@ -117,7 +117,7 @@ impl<F: Field> InfoSource for Dict<'_, F> {
     fn name(&mut self, key: &'static str) -> Result<Arc<str>, String> {
         let value = self.value.get(key);
         let name = value.as_ref().and_then(Field::text);
-        // messages and pages show it as it is
+        // messages and pages show it unchanged
         let name = name.filter(|name| quoted(name) == **name);
         let name =
             name.ok_or_else(|| format!("`{key}` is not the name of a task, a line of at most 200 characters"))?;
@@ -135,7 +135,7 @@ impl<F: Field> InfoSource for Dict<'_, F> {
     }
 }
 
-/// Converts records one after the other, which must be of one behavior and not too many.
+/// Converts records one by one. They must have the same behavior, and their number is limited.
 struct Records<'a> {
     limits: &'a Limits,
     number: usize,
@@ -179,14 +179,14 @@ impl<'a> Records<'a> {
     }
 }
 
-/// Converts a list to records, which must be of one behavior.
+/// Converts a list to records of one behavior.
 pub(super) fn records(value: &Value, limits: &Limits) -> Result<Vec<Info>, String> {
     let items = value.items().ok_or("it is not a list of records")?;
     let mut records = Records::new(limits);
     items.iter().map(|item| records.next(item)).collect()
 }
 
-/// A fault that keeps a training log from being read further.
+/// A fault that ends the reading of a training log.
 enum Stop {
     Pickle(PickleError),
     Foreign(String),
@@ -198,12 +198,12 @@ impl From<PickleError> for Stop {
     }
 }
 
-/// Hands out the records of a training log, one at a time.
+/// Visits the records of a training log, one at a time.
 pub(super) fn visit(path: &Path, limits: &Limits, each: impl FnMut(Info)) -> Result<(), LogError> {
     visit_bytes(&super::read_bytes(path, limits)?, path, limits, each)
 }
 
-/// Hands out the records of the bytes of a training log; `path` stands for them in errors.
+/// Visits the records of the bytes of a training log. Errors name `path`.
 pub(super) fn visit_bytes(
     bytes: &[u8],
     path: &Path,
@@ -237,7 +237,7 @@ pub(super) fn visit_bytes(
 /// Reads the training log of a run: one record for each completed episode.
 ///
 /// # Errors
-/// No log, a file that is none, one that is damaged.
+/// A missing file, or one that is damaged or not a log.
 pub fn read_training(save_dir: impl AsRef<Path>) -> Result<Vec<Info>, LogError> {
     read_records(training_path(save_dir))
 }
@@ -250,7 +250,7 @@ pub fn read_records(path: impl AsRef<Path>) -> Result<Vec<Info>, LogError> {
     read_records_with(path, &Limits::DEFAULT)
 }
 
-/// Reads a training log by its path, within other limits than the default ones.
+/// Reads a training log by its path, within limits of the caller's choice.
 ///
 /// # Errors
 /// As [`read_training`].
@@ -265,11 +265,11 @@ pub fn read_records_with(path: impl AsRef<Path>, limits: &Limits) -> Result<Vec<
 pub struct RecentRecords {
     /// Number of records in the log.
     pub total: usize,
-    /// The last of them, the oldest first.
+    /// The last records, oldest first.
     pub records: Vec<Info>,
 }
 
-/// Reads the last `most` records of a training log by its path. Memory does not grow with the rest.
+/// Reads the last `most` records of a training log by its path. Memory does not depend on the others.
 ///
 /// # Errors
 /// As [`read_training`].

@@ -13,7 +13,7 @@ use crate::files::{self, Owner};
 use crate::formats::pickle::{DictWriter, ListWriter};
 use crate::limits::Limits;
 
-/// Advice where only the lines of a log are left.
+/// Advice if only the lines of a log are left.
 const LOST: &str = "it is missing, but training.jsonl beside it has records: bring it back to go on with them, or train anew, \
                     which replaces both";
 
@@ -27,9 +27,9 @@ pub struct TrainingTotals {
     pub steps: u64,
     /// Number of records of a task with a goal.
     pub tasks: usize,
-    /// Number of those that ended in success.
+    /// Number of those records that ended in success.
     pub successes: usize,
-    /// Sum of the returns of those.
+    /// Sum of the returns of those records.
     pub returns: f64,
 }
 
@@ -45,38 +45,38 @@ impl TrainingTotals {
     }
 }
 
-/// The log of a training run, saved as often as its configuration says.
+/// The log of a training run, saved at the interval of its configuration.
 ///
-/// Under `compat: api` every episode of at least one step is a record, and the log is saved whenever their number is a
-/// multiple of `save_logs_every`. Under `compat: reference` every reset adds a record, also the first one (an empty
-/// record), and the log is saved when the number of steps of the ended episode is a multiple of `save_logs_every`.
+/// Under `compat: api` every episode of at least one step is a record, and the log is saved whenever their number is a multiple of
+/// `save_logs_every`. Under `compat: reference` every reset adds a record, including the first one (an empty record), and the log is
+/// saved when the number of steps of the ended episode is a multiple of `save_logs_every`.
 ///
-/// Records are kept as the bytes of the file, some tens of bytes each.
+/// Records are kept as the bytes of the file, a few tens of bytes each.
 #[derive(Clone, Debug)]
 pub struct TrainingLog {
     save_dir: PathBuf,
     compat: Compat,
     save_every: u64,
-    /// `training.pkl` as it would be saved.
+    /// The bytes of `training.pkl`.
     pickle: ListWriter,
     totals: TrainingTotals,
     recent: VecDeque<Info>,
-    /// All records, once somebody has asked for them.
+    /// All records, decoded on first use.
     records: OnceLock<Vec<Info>>,
     resumed: bool,
     lines: Lines,
-    /// Both counters of `hand_regard` by record: lines have them, pickles, which are the kit's, have one.
+    /// Both counters of `hand_regard` by record. Lines have both; pickles, which have the kit's format, have one.
     regards: BTreeMap<usize, Regards>,
-    /// Refuses the folder to other processes that would train into it.
+    /// The lock that keeps other processes from training into the folder.
     _owner: Arc<Owner>,
 }
 
 impl TrainingLog {
-    /// How many records [`TrainingLog::recent`] has at most: as many as scores look at.
+    /// Maximum number of records of [`TrainingLog::recent`], which is the number that scores use.
     pub const RECENT: usize = 10_001;
 
-    /// Creates a log in the configuration's `save_dir`, which is created too; an existing log is overwritten. Until the
-    /// log and its copies are dropped, other processes cannot train into that folder.
+    /// Creates a log in the configuration's `save_dir`, which is created if necessary. An existing log is overwritten. Until the log and
+    /// its copies are dropped, other processes cannot train into that folder.
     ///
     /// # Errors
     /// A folder into which another process trains; errors of the file system.
@@ -124,7 +124,7 @@ impl TrainingLog {
             }
             return Self::create(config);
         }
-        // its lines are copied into the new ones
+        // its lines are copied to the new file
         check_inside(&path.with_extension("jsonl"))?;
         let mut log = Self::before(config, &path)?;
         let mut first = None;
@@ -133,8 +133,8 @@ impl TrainingLog {
         Ok(log)
     }
 
-    /// Resumes a log as [`TrainingLog::resume`] does, with the names of the touched parts. Where there are no lines beside the
-    /// log, as in a folder of the kit, they are written while it is read.
+    /// Resumes a log as [`TrainingLog::resume`] does, with the names of the touched parts. If the log has no lines beside it, like the
+    /// kit's logs, they are written while it is read.
     pub(in crate::runs) fn resume_with(config: &Config, names: Option<PartNames>) -> Result<Self, LogError> {
         let path = training_path(&config.save_dir);
         let beside = path.with_extension("jsonl");
@@ -150,14 +150,14 @@ impl TrainingLog {
         Ok(log)
     }
 
-    /// Returns a log without records that has room for those in a file.
+    /// Returns a log without records that has capacity for those of a file.
     fn before(config: &Config, path: &Path) -> Result<Self, LogError> {
         let owner = own_folder(config.save_dir.as_ref())?;
         let bytes = std::fs::metadata(path).map_or(0, |meta| meta.len().min(Limits::DEFAULT.pickle_bytes as u64));
         Ok(Self::empty(config, owner, bytes as usize))
     }
 
-    /// Reads the records of a file, each of which `each` sees. Keeps the first one in `first`.
+    /// Reads the records of a file and calls `each` for every record. Stores the first one in `first`.
     fn read(
         &mut self,
         config: &Config,
@@ -177,7 +177,7 @@ impl TrainingLog {
         })?;
         self.resumed = first.is_some();
         let found = first.as_ref().map(|r| r.behavior.name());
-        // a name that is not a behavior's is that of a user-defined task, of which a configuration says nothing
+        // a name that is not a behavior's belongs to a user-defined task, which the configuration does not know
         let other = |name: &&str| Behavior::from_name(name).is_some_and(|behavior| behavior != config.behavior);
         match found.filter(other) {
             Some(found) => Err(LogError::Foreign {
@@ -189,7 +189,7 @@ impl TrainingLog {
         }
     }
 
-    /// Refuses to go on with the records of another task.
+    /// Returns an error for the records of another task.
     pub(in crate::runs) fn check_task(&self, task: &str) -> Result<(), LogError> {
         let last = self.recent.back().and_then(|info| info.behavior.task());
         match last.filter(|last| *last.task != *task) {
@@ -223,20 +223,20 @@ impl TrainingLog {
         self.recent.push_back(info);
     }
 
-    /// Returns the records so far. They are made when this is first called, a hundred bytes and more each;
-    /// [`TrainingLog::recent`] and [`TrainingLog::totals`] are at hand.
+    /// Returns the records so far. The first call decodes them, a hundred bytes and more each; [`TrainingLog::recent`] and
+    /// [`TrainingLog::totals`] need no decoding.
     pub fn records(&self) -> &[Info] {
         self.records.get_or_init(|| {
             let mut records = Vec::with_capacity(self.totals.records);
-            // what was pushed can be read, but for a record of another behavior, at which a log ends
+            // everything that was pushed can be read, except a record of another behavior, which ends a log
             let _ = self.visit(|info| records.push(info));
             records
         })
     }
 
-    /// Hands out the records so far, one at a time.
+    /// Visits the records so far, one at a time.
     fn visit(&self, mut each: impl FnMut(Info)) -> Result<(), LogError> {
-        // whatever is in memory already
+        // everything already in memory
         let limits = Limits {
             pickle_bytes: usize::MAX,
             pickle_numbers: usize::MAX,
@@ -277,8 +277,8 @@ impl TrainingLog {
         &self.save_dir
     }
 
-    /// Records an episode that ended after `steps` steps, and saves when it is time to. An environment that logs
-    /// ([`crate::make_env`]) does so by itself; this is for programs that run many environments into one log.
+    /// Records an episode that ended after `steps` steps, and saves when due. An environment that logs ([`crate::make_env`]) does so
+    /// itself; this is for programs that run many environments into one log.
     ///
     /// # Errors
     /// Errors of the file system.
@@ -286,8 +286,8 @@ impl TrainingLog {
         self.end(record(steps, behavior.clone()))
     }
 
-    /// Records an episode as [`TrainingLog::end_episode`] does, with what its last information has beyond the keys of the kit: both counters
-    /// of `hand_regard`, as `page_regards` and `kit_regards` in `training.jsonl`.
+    /// Records an episode as [`TrainingLog::end_episode`] does, including the part of its last information beyond the kit's keys: both
+    /// counters of `hand_regard`, as `page_regards` and `kit_regards` in `training.jsonl`.
     ///
     /// # Errors
     /// Errors of the file system.
@@ -328,7 +328,7 @@ impl TrainingLog {
     }
 }
 
-/// Reads both counters of `hand_regard` from the lines of a log, by record; without lines that have them there are none.
+/// Reads both counters of `hand_regard` from the lines of a log, by record; empty if the lines do not have them.
 fn regards_of(path: &Path) -> BTreeMap<usize, Regards> {
     #[derive(serde::Deserialize)]
     struct Line {
@@ -347,7 +347,7 @@ fn regards_of(path: &Path) -> BTreeMap<usize, Regards> {
     both.take(Limits::DEFAULT.records).collect()
 }
 
-/// Writes a record with the keys of the kit, in its order.
+/// Writes a record with the kit's keys, in its order.
 fn fill(dict: &mut DictWriter, info: &Info) {
     for (key, value) in info.fields(None) {
         match value {

@@ -5,11 +5,11 @@ use crate::limits::Limits;
 use crate::math::{MINVAL, quat_normalize};
 use crate::text::quoted;
 
-/// The largest angle that is taken for one in rad: two turns.
+/// The largest angle accepted in rad: two turns.
 const LARGEST: f64 = 4.0 * std::f64::consts::PI;
 /// The largest distance of the root from the origin, m.
 const FAR: f64 = 1000.0;
-/// The highest rate, Hz: a thousand frames in each of MIMo's physics steps would be a mistake.
+/// The highest rate, Hz. A thousand frames per physics step would be a mistake.
 const HIGHEST: f64 = 200_000.0;
 
 impl Motion {

@@ -1,4 +1,4 @@
-//! MIMo in motion: what he senses.
+//! Motions played by MIMo.
 
 use super::track::Tracker;
 use super::{Motion, MotionError};
@@ -8,15 +8,15 @@ use crate::model::{JointType, Model};
 use crate::runs::Recorder;
 use crate::text::quoted;
 
-/// How a motion is played.
+/// The way of playing a motion.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Playing {
-    /// MIMo is put into each pose, with the velocities that lead from one to the next; nothing acts on him. All else stays where it was,
-    /// at rest.
+    /// MIMo is moved to each pose, with the velocities that lead from one to the next; nothing acts on him. Everything else stays where
+    /// it was, at rest.
     #[default]
     Kinematic,
-    /// MIMo's motors follow the angles; everything moves by the physics, and the root is left to it.
+    /// MIMo's motors follow the angles. Everything, including the root, moves by the physics.
     Tracking,
 }
 
@@ -26,24 +26,23 @@ pub enum Playing {
 pub struct Played {
     /// Number of steps of the environment.
     pub steps: u64,
-    /// How far the joints were from the motion, rad: root of the mean square over steps and joints. 0 when played kinematically.
+    /// Distance of the joints from the motion, rad: root mean square over steps and joints. 0 when played kinematically.
     pub error: f64,
-    /// The joint that was farthest, and how far, rad.
+    /// The joint with the largest distance, and that distance, rad.
     pub worst: Option<(String, f64)>,
     /// Joints whose range the motion leaves.
     pub beyond_limits: Vec<String>,
 }
 
-/// Plays a motion in an environment that was reset, and records what MIMo would feel and see as an episode of a record, if there is one:
-/// the recorder and the number of the episode.
+/// Plays a motion in an environment that was reset, and records what MIMo would feel and see as an episode of a record, if the recorder
+/// and the number of the episode are given.
 ///
-/// MIMo begins in the first frame. Step k, from 0, shows the motion `k dt` after it, between frames by straight lines; tracking reaches for
-/// what comes `dt` later. Joints that the motion does not name stay as the reset left them, or are held there. Played
-/// kinematically, actions are 0. After each step `each` is asked whether to go on.
+/// MIMo starts in the first frame. Step k, from 0, shows the motion `k dt` later, with linear interpolation between frames; tracking aims
+/// at the pose `dt` later. Joints that the motion does not name stay as the reset left them, or are held there. Played kinematically,
+/// actions are 0. After each step `each` returns whether to continue.
 ///
 /// # Errors
-/// Joints that MIMo does not have, a root that he does not have; muscles that are to follow angles; a simulation that diverged;
-/// errors of the record.
+/// Joints or a root that MIMo does not have; muscles, which cannot follow angles; a simulation that diverged; errors of the record.
 pub fn play_motion(
     env: &mut Env,
     motion: &Motion,
@@ -53,7 +52,7 @@ pub fn play_motion(
 ) -> Result<Played, MotionError> {
     let course = Course::new(env, motion)?;
     let dt = env.blueprint().dt();
-    // times that a division leaves just below a whole number of steps reach it
+    // times just below a whole number of steps, by rounding, count as that number
     let steps = (motion.seconds() / dt + 1e-6).floor() as u64 + 1;
     let mut played = Played {
         beyond_limits: course.beyond_limits(env.model()),
@@ -105,7 +104,7 @@ pub fn play_motion(
     Ok(played)
 }
 
-/// Makes a step with an action, and records it, if there is a recorder.
+/// Makes a step with an action, and records it if there is a recorder.
 fn follow(env: &mut Env, action: &[f32], recorder: Option<&mut Recorder>) -> Result<(), MotionError> {
     match recorder {
         Some(recorder) => recorder.step(env, action)?,
@@ -115,7 +114,7 @@ fn follow(env: &mut Env, action: &[f32], recorder: Option<&mut Recorder>) -> Res
 }
 
 impl Played {
-    /// Computes how far the joints were, from the sums of squares.
+    /// Computes the distances of the joints from the sums of squares.
     fn conclude(&mut self, squares: &[f64], motion: &Motion) {
         let steps = self.steps.max(1) as f64;
         let total: f64 = squares.iter().sum();
@@ -139,7 +138,7 @@ struct Place {
 struct Course<'m> {
     motion: &'m Motion,
     joints: Vec<Place>,
-    /// Where the root stands in positions and velocities.
+    /// Indices of the root in positions and velocities.
     root: Option<(usize, usize)>,
 }
 
@@ -181,7 +180,7 @@ impl<'m> Course<'m> {
         beyond
     }
 
-    /// Writes positions at a time, s, and the velocities that lead through them: differences over the step before and the one after.
+    /// Writes positions at a time, s, and their velocities: differences between the step before and the one after.
     fn at(&self, time: f64, dt: f64, qpos: &mut [f64], qvel: &mut [f64]) {
         let end = self.motion.seconds();
         let (before, after) = ((time - dt).max(0.0), (time + dt).min(end));
@@ -202,11 +201,11 @@ impl<'m> Course<'m> {
         qvel[dof + 3..dof + 6].copy_from_slice(&scale(rotation_between(first.1, last.1), per_second));
     }
 
-    /// Returns the frames around a time, and how far it is from the first to the second.
+    /// Returns the frames around a time, and its fraction of the way from the first to the second.
     fn frames(&self, time: f64) -> (usize, usize, f64) {
         let last = self.motion.frames() - 1;
         let at = (time * self.motion.rate()).clamp(0.0, last as f64);
-        // what a division leaves beside a frame is that frame
+        // times beside a frame, by rounding, are that frame
         let near = at.round();
         if (at - near).abs() < 1e-6 {
             return (near as usize, near as usize, 0.0);
@@ -226,14 +225,14 @@ impl<'m> Course<'m> {
         let (first, second, share) = self.frames(time);
         let ((p, q), (r, s)) = (poses[first], poses[second]);
         let along: f64 = q.iter().zip(&s).map(|(a, b)| a * b).sum();
-        // both signs of a quaternion are the same turn; the near one is on the way
+        // both signs of a quaternion are the same rotation; use the nearer one
         let sign = if along < 0.0 { -1.0 } else { 1.0 };
         let turned = std::array::from_fn(|i| q[i] + share * (sign * s[i] - q[i]));
         (add_scaled(p, sub(r, p), share), quat_normalize(turned))
     }
 }
 
-/// Says which joint may be meant.
+/// Suggests the intended joint.
 fn hint<'n>(name: &str, known: impl Iterator<Item = &'n str>) -> String {
     const LONGEST: usize = 64; // the distance costs the product of the lengths
     if name.len() > LONGEST {
@@ -243,7 +242,7 @@ fn hint<'n>(name: &str, known: impl Iterator<Item = &'n str>) -> String {
     nearest.map_or_else(String::new, |nearest| format!("; did you mean {nearest:?}?"))
 }
 
-/// Returns where MIMo's free joint stands in positions and velocities, if he has one.
+/// Returns the indices of MIMo's free joint in positions and velocities, if he has one.
 fn free_root(model: &Model) -> Option<(usize, usize)> {
     let mut body = model.body("hip")?;
     while body > 0 {

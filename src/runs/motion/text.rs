@@ -10,12 +10,12 @@ use crate::text::quoted;
 const ROOT: [&str; 7] = ["root_x", "root_y", "root_z", "root_qw", "root_qx", "root_qy", "root_qz"];
 /// Columns that a table may have.
 const COLUMNS: usize = 10_000;
-/// How far a time may be from where equal distances put it, as a part of the distance.
+/// Tolerance of a time against even spacing, as a share of the spacing.
 const UNEVEN: f64 = 0.1;
 
-/// Where the columns of a table go.
+/// The targets of the columns of a table.
 struct Columns {
-    /// For each column but the time: joint, or place in [`ROOT`].
+    /// For each column except the time: joint, or index in [`ROOT`].
     place: Vec<Result<usize, usize>>,
     names: Vec<String>,
     rooted: bool,
@@ -42,7 +42,7 @@ pub(super) fn parse(path: &Path, bytes: &[u8], degrees: bool, limits: &Limits) -
         let mut cells = line.split(',');
         times.push(number(cells.next().unwrap_or_default()).map_err(|reason| fault(at, reason))?);
         let mut found = 0;
-        // in this order no cell beyond the last column is taken
+        // in this order no cell beyond the last column is read
         for (place, cell) in columns.place.iter().zip(cells.by_ref()) {
             let value = number(cell).map_err(|reason| fault(at, reason))?;
             match *place {
@@ -108,13 +108,13 @@ fn number(cell: &str) -> Result<f64, String> {
     cell.parse().map_err(|_| format!("{} is not a number", quoted(cell)))
 }
 
-/// Returns how many frames a second has.
+/// Returns the number of frames per second.
 fn rate(times: &[f64]) -> Result<f64, String> {
     let (Some(&first), Some(&last)) = (times.first(), times.last()) else {
         return Err("the motion has no frames".to_string());
     };
     if times.len() == 1 {
-        // a single pose lasts no time at all
+        // a single pose has no duration
         return Ok(1.0);
     }
     let each = (last - first) / (times.len() - 1) as f64;

@@ -4,13 +4,13 @@ use super::MotionError;
 use crate::config::ActuationModel;
 use crate::env::Env;
 
-/// How fast an error of an angle vanishes, 1/s: critically damped, in about 0.1 s.
+/// The rate at which an error of an angle vanishes, 1/s: critically damped, in about 0.1 s.
 const PACE: f64 = 40.0;
 
 /// Actions that bring joints to angles.
 ///
 /// A motor gives `m0 (w^2 (q* - q) + 2 w (v* - v)) + bias - passive`, over its gear and within its bounds: `m0` is the inertia of the
-/// joint at `qpos0`, `w` the pace; bias and passive forces are those of the present moment. A servo is told the angle.
+/// joint at `qpos0`, `w` the rate, and bias and passive are the current forces. A servo gets the angle as its target.
 pub(super) struct Tracker {
     actuators: Vec<Pull>,
     servos: bool,
@@ -26,7 +26,7 @@ struct Pull {
 }
 
 impl Tracker {
-    /// Looks at the actuators of an environment.
+    /// Reads the actuators of an environment.
     ///
     /// # Errors
     /// Muscles.
@@ -54,7 +54,7 @@ impl Tracker {
         })
     }
 
-    /// Returns the action towards positions and velocities. What else acts gets 0.
+    /// Returns the action towards positions and velocities. Other actuators get 0.
     pub fn action(&mut self, env: &Env, qpos: &[f64], qvel: &[f64]) -> &[f32] {
         let state = env.state();
         for (action, pull) in self.action.iter_mut().zip(&self.actuators) {

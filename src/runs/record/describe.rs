@@ -60,7 +60,7 @@ fn region(part: Part) -> &'static str {
     }
 }
 
-/// Writes where the touch sensors are, if there are any: `skin.npz`.
+/// Writes the positions of the touch sensors, if there are any: `skin.npz`.
 pub(super) fn write_skin(env: &Env, dir: &Path) -> Result<(), RecordError> {
     let Some(skin) = env.blueprint().skin() else {
         return Ok(());
@@ -91,7 +91,7 @@ pub(super) fn meaning(name: &str) -> (&'static str, &'static str) {
     )
 }
 
-/// Lists names, dimensions and meanings, an array a line.
+/// Lists names, dimensions and meanings, one line per array.
 macro_rules! meanings {
     ($($name:literal $shape:literal $meaning:literal)*) => {
         &[$(($name, $shape, $meaning)),*]

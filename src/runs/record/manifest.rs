@@ -10,9 +10,9 @@ use crate::config::Config;
 use crate::env::Env;
 use crate::sensors::EYES;
 
-/// Name of the format, with which a description begins.
+/// Name of the format, at the start of a description.
 pub(super) const FORMAT: &str = "babybench record";
-/// The version of what this library writes.
+/// The version of the format that this library writes.
 pub(super) const VERSION: u32 = 1;
 
 /// The contents of a record, and their origin: `manifest.json`.
@@ -25,7 +25,7 @@ pub struct Manifest {
     pub version: u32,
     /// The version of babybench that recorded.
     pub babybench: String,
-    /// The commit that it was built from, if whoever built it said so (the variable `BABYBENCH_COMMIT`).
+    /// The commit that it was built from, if the build named it (the variable `BABYBENCH_COMMIT`).
     pub commit: Option<String>,
     /// The processor and the system on which it ran.
     pub platform: String,
@@ -35,16 +35,16 @@ pub struct Manifest {
     pub configuration: Config,
     /// Simulated time of a step, s.
     pub dt: f64,
-    /// Height of the field of view of his eyes, degrees, of the left one if they differ; none if he has no eyes.
+    /// Vertical field of view of his eyes, degrees, of the left one if they differ; none if he has no eyes.
     pub fovy: Option<f64>,
-    /// Height of the field of view of his right eye, degrees, if it is not that of the left one.
+    /// Vertical field of view of his right eye, degrees, if it differs from the left one's.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub fovy_right: Option<f64>,
     /// MIMo's joints, in the order of the observation.
     pub joints: Vec<JointDescription>,
     /// The names of the actions.
     pub actions: Vec<String>,
-    /// The names of the bodies of the scene, by id; none in records of before.
+    /// The names of the bodies of the scene, by id; none in older records.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub bodies: Vec<String>,
     /// The geoms of the scene, by id.
@@ -84,7 +84,7 @@ pub struct GeomDescription {
 /// An array of the archives.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct ArrayDescription {
-    /// Its type, as NumPy writes it.
+    /// Its type, in NumPy's notation.
     pub dtype: String,
     /// Its dimensions, in words: T steps, C contacts, N touched sensors.
     pub shape: String,
@@ -134,7 +134,7 @@ impl Manifest {
         }
     }
 
-    /// Adds an episode, or replaces the one of its number; `arrays` are those of its archive, with their types.
+    /// Adds an episode, or replaces the one with its number. `arrays` are those of its archive, with their types.
     pub(super) fn add(&mut self, episode: EpisodeDescription, arrays: Vec<(String, &'static str)>) {
         for (name, dtype) in arrays {
             let (shape, meaning) = meaning(&name);

@@ -5,8 +5,8 @@ use std::path::PathBuf;
 use super::{RecordError, RecordOptions, Recorder};
 use crate::vector::{AutoresetMode, Batch, VectorEnv};
 
-/// Records all environments of a vector into one folder, whose episodes are as if each had run alone: that which environment `i` of `n`
-/// has as its `e`-th gets the number `n * e + i`.
+/// Records all environments of a vector into one folder, with the same episodes as if each had run alone. The `e`-th episode of
+/// environment `i` of `n` gets the number `n * e + i`.
 ///
 /// ```
 /// use babybench::runs::{Record, RecordOptions, VectorRecorder};
@@ -29,19 +29,19 @@ use crate::vector::{AutoresetMode, Batch, VectorEnv};
 /// ```
 #[derive(Debug)]
 pub struct VectorRecorder {
-    /// Of each environment.
+    /// The recorder of each environment.
     each: Vec<Recorder>,
-    /// Of each environment whether its episode went on before the step, and how many numbers its generator had drawn.
+    /// For each environment whether its episode was running before the step, and how many numbers its generator had drawn.
     before: Vec<Option<u64>>,
 }
 
 impl VectorRecorder {
-    /// Makes the folder of a record, for a vector that does not reset its environments by itself.
+    /// Creates the folder of a record, for a vector that does not reset its environments itself.
     ///
     /// # Errors
     /// As [`Recorder::create`]; [`RecordError::Autoreset`]; environments in flight.
     pub fn create(dir: impl Into<PathBuf>, envs: &VectorEnv, options: RecordOptions) -> Result<Self, RecordError> {
-        // what a step resets by itself is gone before it can be recorded
+        // an episode that a step resets itself is gone before it can be recorded
         if envs.autoreset() != AutoresetMode::Disabled {
             return Err(RecordError::Autoreset);
         }
@@ -52,7 +52,7 @@ impl VectorRecorder {
         })
     }
 
-    /// Begins to record an episode of each environment from the present moment on, as [`Recorder::begin`] does.
+    /// Starts recording an episode of each environment from the current moment on, as [`Recorder::begin`] does.
     ///
     /// # Errors
     /// Environments in flight.
@@ -64,11 +64,11 @@ impl VectorRecorder {
         Ok(())
     }
 
-    /// Applies actions, as [`VectorEnv::step`] does, and records what comes of them. Environments whose episode is over, and those that
-    /// diverge, record nothing more of it.
+    /// Applies actions, as [`VectorEnv::step`] does, and records the results. Environments whose episode is over, and those that diverge,
+    /// record nothing more.
     ///
     /// # Errors
-    /// As [`VectorEnv::step`] and [`VectorEnv::look`]; no episode was begun.
+    /// As [`VectorEnv::step`] and [`VectorEnv::look`]; no episode has begun.
     pub fn step<'v>(&mut self, envs: &'v mut VectorEnv, actions: &[f32]) -> Result<Batch<'v>, RecordError> {
         self.before.clear();
         for i in 0..self.each.len() {
@@ -76,7 +76,7 @@ impl VectorRecorder {
             self.before.push((!env.over()).then(|| env.drawn()));
         }
         envs.step(actions)?;
-        // checksums are of images, too
+        // checksums include images
         envs.look()?;
         // the step has checked the length
         let len = actions.len() / envs.len();

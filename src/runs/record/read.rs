@@ -1,4 +1,4 @@
-//! Records, read and repeated.
+//! Readers and replays of records.
 
 use std::path::{Path, PathBuf};
 
@@ -23,7 +23,7 @@ pub struct Record {
 pub struct Replayed {
     /// Number of steps.
     pub steps: u64,
-    /// The first step, from 0, whose bits are not those of the record; `None` if all are.
+    /// The first step, from 0, whose bits differ from the record's; `None` if all are equal.
     pub first_difference: Option<u64>,
 }
 
@@ -31,12 +31,12 @@ impl Record {
     /// Reads the description of a record.
     ///
     /// # Errors
-    /// No record, a damaged one, one of a later version.
+    /// A record that is missing, damaged, or of a later version.
     pub fn open(dir: impl AsRef<Path>) -> Result<Self, RecordError> {
         Self::open_with(dir, &Limits::DEFAULT)
     }
 
-    /// Reads the description of a record within other limits than the default ones.
+    /// Reads the description of a record within limits of the caller's choice.
     ///
     /// # Errors
     /// As [`Record::open`].
@@ -58,7 +58,7 @@ impl Record {
                 manifest.format, manifest.version
             )));
         }
-        // names of files come from outside: they must not lead out of the folder
+        // names of files are untrusted and must not lead out of the folder
         let plain = |file: &str| !file.is_empty() && !file.contains(['/', '\\', ':']) && file != "..";
         if let Some(episode) = manifest.episodes.iter().find(|episode| !plain(&episode.file)) {
             return Err(damaged(format!(
@@ -87,7 +87,7 @@ impl Record {
     /// Returns the path of the archive of an episode.
     ///
     /// # Errors
-    /// There is no such episode.
+    /// The episode does not exist.
     pub fn path(&self, episode: u64) -> Result<PathBuf, RecordError> {
         let found = self.manifest.episodes.iter().find(|e| e.episode == episode);
         let found = found.ok_or_else(|| RecordError::Episode {
@@ -101,7 +101,7 @@ impl Record {
     /// Opens the archive of an episode.
     ///
     /// # Errors
-    /// No such episode, an archive that cannot be read.
+    /// An episode that does not exist, or an archive that cannot be read.
     pub fn npz(&self, episode: u64) -> Result<Npz, RecordError> {
         Ok(Npz::open(self.path(episode)?)?)
     }
@@ -109,7 +109,7 @@ impl Record {
     /// Repeats an episode in an environment of the record's configuration, and compares the bits of every step.
     ///
     /// # Errors
-    /// No such episode, an archive that cannot be read or that does not fit the environment; as [`Env::step`].
+    /// An episode that does not exist, an archive that cannot be read or does not match the environment; as [`Env::step`].
     pub fn replay(&self, episode: u64, env: &mut Env) -> Result<Replayed, RecordError> {
         let path = self.path(episode)?;
         let npz = Npz::open(&path)?;
@@ -133,7 +133,7 @@ impl Record {
         for (t, &expected) in checksums.iter().enumerate() {
             action.clear();
             action.extend(actions.data[t * na..(t + 1) * na].iter().map(|&v| v as f32));
-            // what the policy drew is not drawn again
+            // the policy's random numbers are not drawn again
             env.draw_from(drawn.data[t] as u64);
             env.step(&action)?;
             env.look()?;

@@ -10,7 +10,7 @@ use crate::spaces::{Array, Values};
 /// The names of arrays with their types.
 pub(super) type Names = Vec<(String, &'static str)>;
 
-/// Values that are not zero, step by step.
+/// Nonzero values, step by step.
 #[derive(Debug, Default)]
 struct Sparse {
     ptr: Vec<i32>,
@@ -35,7 +35,7 @@ struct Told {
     first_touch_step: Vec<i32>,
     first_touch_hand: Vec<u8>,
     first_touch_geom: Vec<i32>,
-    /// How many parts each hand had touched before.
+    /// Number of parts that each hand had touched before.
     touched: [usize; 2],
     regards: Vec<i32>,
     gaze_angles: Vec<f32>,
@@ -70,14 +70,14 @@ pub(super) struct Rows {
 }
 
 impl Rows {
-    /// Begins an episode.
+    /// Starts an episode.
     pub fn new(env: &Env, options: &RecordOptions) -> Self {
         let mut rows = Self::default();
         rows.begin(env, options);
         rows
     }
 
-    /// Begins an episode with the room of the last one.
+    /// Starts an episode with the allocations of the last one.
     pub fn begin(&mut self, env: &Env, options: &RecordOptions) {
         self.clear();
         let state = env.state();
@@ -110,7 +110,7 @@ impl Rows {
         self.checksum.len()
     }
 
-    /// Forgets the episode but keeps the room.
+    /// Clears the episode but keeps the allocations.
     pub fn clear(&mut self) {
         if let Some(touch) = &mut self.touch {
             touch.ptr.clear();
@@ -140,7 +140,7 @@ impl Rows {
         self.eye_steps.clear();
     }
 
-    /// Adds a step; `drawn` is how many numbers the generator had drawn before it.
+    /// Adds a step. `drawn` is how many numbers the generator had drawn before it.
     pub fn push(&mut self, env: &Env, action: &[f32], drawn: u64, options: &RecordOptions) {
         let (state, observation) = (env.state(), env.observation());
         let step = self.len();
@@ -197,7 +197,7 @@ impl Rows {
         out.put("checksum", &[t], &self.checksum, Packing::Stored)?;
         if let Some(touch) = &self.touch {
             out.put("touch_ptr", &[t + 1], &touch.ptr, Packing::Fast)?;
-            // places in a skin of usual size take two bytes
+            // indices into a skin of usual size take two bytes
             if touch.len <= 1 << 16 {
                 let idx: Vec<u16> = touch.idx.iter().map(|&at| at as u16).collect();
                 out.put("touch_idx", &[idx.len()], &idx, Packing::Fast)?;
@@ -282,7 +282,7 @@ impl Contacts {
 }
 
 impl Told {
-    /// Takes note of what was touched before the first step, where lists go on from episode to episode.
+    /// Records the touches before the first step, for lists that continue from episode to episode.
     fn begin(&mut self, behavior: &BehaviorInfo) {
         self.touched = behavior.touches().map_or([0; 2], |touches| touches.map(<[usize]>::len));
     }
@@ -334,11 +334,11 @@ impl Told {
     }
 }
 
-/// Hands out the places and values that are not zero.
+/// Visits the indices and values that are not zero.
 fn nonzero(values: &[f32], mut each: impl FnMut(i32, f32)) {
     const BLOCK: usize = 32;
     for (block, chunk) in values.chunks(BLOCK).enumerate() {
-        // nearly all of the skin feels nothing; shifted, the sign of a zero falls out
+        // nearly all sensors are zero; the shift drops the sign of a zero
         if chunk.iter().fold(0, |any, v| any | (v.to_bits() << 1)) == 0 {
             continue;
         }
@@ -371,7 +371,7 @@ pub(super) fn checksum(env: &Env) -> i64 {
     sum.0 as i64
 }
 
-/// The hash of Fowler, Noll and Vo over words instead of bytes, turned so that high bits reach low ones.
+/// The hash of Fowler, Noll and Vo over words instead of bytes, rotated so that high bits reach low ones.
 struct Checksum(u64);
 
 impl Checksum {

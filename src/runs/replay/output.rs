@@ -12,7 +12,7 @@ use crate::sensors::ObservationEntry;
 use crate::sensors::transform::Sense;
 use crate::spaces::{Array, Values};
 
-/// Touch values that are not zero, step by step.
+/// Nonzero touch values, step by step.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct TouchRows {
     /// First entry of each step (T + 1).
@@ -56,7 +56,7 @@ pub struct Replay {
     pub observation: Vec<f64>,
     /// Touch, if active.
     pub touch: Option<TouchRows>,
-    /// The other senses that are active (T, len); what the eyes saw, in the steps whose pictures were taken (K, H, W, ...).
+    /// The other active senses (T, len); images of the eyes, in the steps whose pictures were taken (K, H, W, ...).
     pub senses: Vec<(&'static ObservationEntry, Array)>,
     /// First contact of each step (T + 1).
     pub contact_ptr: Vec<i64>,
@@ -87,7 +87,7 @@ pub struct TaskRows {
     pub reward: Vec<f64>,
     /// Whether success or failure ended the episode (T).
     pub terminated: Vec<bool>,
-    /// Whether the episode was cut off (T).
+    /// Whether the episode was truncated (T).
     pub truncated: Vec<bool>,
     /// Achieved goals (T, n).
     pub achieved_goal: Vec<f64>,
@@ -122,7 +122,7 @@ impl TaskRows {
     }
 }
 
-/// Writes where the episodes of a recording start, so that the replay is a recording, too.
+/// Writes the starts of a recording's episodes, so that the replay is a recording, too.
 fn write_starts(npz: &mut NpzWriter, recording: &Recording) -> Result<(), ReplayError> {
     let starts = &recording.episodes;
     if starts.is_empty() {
@@ -155,7 +155,7 @@ fn write_starts(npz: &mut NpzWriter, recording: &Recording) -> Result<(), Replay
     Ok(())
 }
 
-/// Returns whether an entry is among [`Replay::senses`]: goals, proprioception and touch have fields of their own.
+/// Returns whether an entry is in [`Replay::senses`]. Goals, proprioception and touch have fields of their own.
 fn is_sense(entry: &ObservationEntry) -> bool {
     entry
         .sense
@@ -177,7 +177,7 @@ impl Replay {
     pub(super) fn begin(env: &Env, len: usize) -> Self {
         let spaces = env.observation_space();
         let there = |key| spaces.iter().any(|space| space.key == key);
-        // pictures are taken whether the eyes see or not
+        // pictures are taken whether vision is on or off
         let kept =
             |entry: &&ObservationEntry| is_sense(entry) && (there(entry.key) || entry.image == Some(VisionOutput::Rgb));
         let senses = ObservationEntry::ALL.iter().filter(kept);
@@ -195,13 +195,13 @@ impl Replay {
         }
     }
 
-    /// Returns the rows of a sense by its key in the observation, if it is among [`Replay::senses`].
+    /// Returns the rows of a sense by its key in the observation, if it is in [`Replay::senses`].
     pub fn sense(&self, key: &str) -> Option<Values<'_>> {
         let found = self.senses.iter().find(|(entry, _)| entry.key == key);
         found.map(|(_, rows)| rows.values())
     }
 
-    /// Adds everything but pictures after a step.
+    /// Adds everything except pictures after a step.
     pub(super) fn push(&mut self, env: &Env) {
         let (s, observation) = (env.state(), env.observation());
         self.qpos.extend_from_slice(&s.qpos);
@@ -233,7 +233,7 @@ impl Replay {
         }
     }
 
-    /// Adds what the eyes observe; a viewer draws the colours that they do not.
+    /// Adds the images of the eyes. A viewer draws the colours that they do not observe.
     pub(super) fn push_eyes(&mut self, env: &Env, viewer: &mut Viewer) -> Result<(), EnvError> {
         let (observation, sizes) = (env.observation(), self.eye_sizes);
         for (entry, rows) in self.senses.iter_mut().filter(|(entry, _)| entry.image.is_some()) {
@@ -248,7 +248,7 @@ impl Replay {
         Ok(())
     }
 
-    /// Writes what the eyes saw: the colours, then what else each of them observed.
+    /// Writes the images of the eyes: the colours, then each eye's other images.
     fn write_eyes(&self, npz: &mut NpzWriter) -> Result<(), NpzError> {
         let k = self.eye_steps.len();
         let images = |chosen: &dyn Fn(Sense, VisionOutput) -> bool, npz: &mut NpzWriter| {
@@ -270,8 +270,7 @@ impl Replay {
             .try_for_each(|own| images(&|eye, image| eye == own && image != VisionOutput::Rgb, npz))
     }
 
-    /// Writes `replay.npz`, with the recording's own start and actions, and `info.jsonl` into a directory, which is
-    /// made if it is not there.
+    /// Writes `replay.npz`, with the recording's own start and actions, and `info.jsonl` into a directory, which is created if necessary.
     ///
     /// # Errors
     /// Errors of the file system.
@@ -333,7 +332,7 @@ impl Replay {
     }
 }
 
-/// Returns whose image an entry is: 0 for the left eye, 1 for the right.
+/// Returns the eye of an image entry: 0 for the left, 1 for the right.
 fn eye_of(entry: &ObservationEntry) -> usize {
     entry.sense.and_then(Sense::eye).unwrap_or_default()
 }

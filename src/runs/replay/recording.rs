@@ -25,8 +25,8 @@ pub struct Recording {
     pub qacc: Vec<f64>,
     /// Activities of the muscles (T, na) for one-step replay; empty when not recorded.
     pub activity: Vec<f64>,
-    /// Starts of further episodes, and details of the first one, in recordings of tasks. `qpos0`, `qvel0` and `activity0` are
-    /// those of the first.
+    /// Starts of further episodes, and details of the first one, in recordings of tasks. `qpos0`, `qvel0` and `activity0` belong to the
+    /// first.
     pub episodes: Vec<EpisodeStart>,
 }
 
@@ -45,20 +45,19 @@ pub struct EpisodeStart {
     pub activity: Vec<f64>,
     /// The desired goal.
     pub desired_goal: Vec<f64>,
-    /// Radius (m), mass (kg) and moments of inertia (kg m^2) of the ball, if there is one of changing size.
+    /// Radius (m), mass (kg) and moments of inertia (kg m^2) of the ball, if its size varies.
     pub ball: Option<[f64; 5]>,
 }
 
 impl Recording {
-    /// Reads `qpos0, qvel0, actions` and, if they are there, `activity0, qpos, qvel, qacc`, for `env`. Without
-    /// `activity0` muscles start inactive.
+    /// Reads `qpos0, qvel0, actions` and, if present, `activity0, qpos, qvel, qacc`, for `env`. Without `activity0` muscles start
+    /// inactive.
     ///
-    /// A recording of a task has several episodes: `reset_row` (E) lists the steps before which they start, and `reset_qpos`,
-    /// `reset_qvel` (E, ...) from where; `reset_warm`, `reset_activity`, `reset_desired_goal` and `reset_ball` are read if they are
-    /// there.
+    /// A recording of a task has several episodes. `reset_row` (E) lists the steps before which they start, and `reset_qpos` and
+    /// `reset_qvel` (E, ...) their states. `reset_warm`, `reset_activity`, `reset_desired_goal` and `reset_ball` are read if present.
     ///
     /// # Errors
-    /// Arrays that are missing, unreadable or of a shape that does not fit the environment.
+    /// Arrays that are missing, unreadable or of a shape that does not match the environment.
     pub fn read(archive: &Npz, env: &Env) -> Result<Self, ReplayError> {
         let (nq, nv, na) = (env.model().nq, env.model().nv, env.action_space().len());
         let muscles = env.state().act.len();
@@ -103,7 +102,7 @@ impl Recording {
         })
     }
 
-    /// Returns the start of an episode before a step, if one starts there that is not the first of the recording.
+    /// Returns the start of an episode before a step, if an episode other than the first starts there.
     pub(super) fn start_at(&self, row: usize) -> Option<&EpisodeStart> {
         self.episodes.iter().find(|start| start.row == row)
     }
@@ -157,7 +156,7 @@ impl EpisodeStart {
     }
 }
 
-/// Numbers of a ball: radius, mass, three moments of inertia and two inverse weights, which follow from those.
+/// Numbers of a ball: radius, mass, three moments of inertia, and the two inverse weights derived from them.
 const BALL: usize = 7;
 
 /// The arrays of an archive, with their shapes checked.
@@ -180,7 +179,7 @@ impl Arrays<'_> {
         }
     }
 
-    /// Reads an array of rows of `n` numbers, as many as are wanted, or any number.
+    /// Reads an array of rows of `n` numbers: a given number of rows, or any.
     fn table(&self, name: &'static str, rows: Option<usize>, n: usize) -> Result<Vec<f64>, ReplayError> {
         let a = self.archive.get_f64(name)?;
         let fits = matches!(a.shape[..], [found, columns] if columns == n && rows.is_none_or(|rows| rows == found));

@@ -1,4 +1,4 @@
-//! A document with all that it names, as files of a folder: images, meshes, and the models that it attaches, which are documents of their own.
+//! Documents with all files that they name, as a folder: images, meshes, and attached models, which are documents of their own.
 
 use std::collections::BTreeMap;
 
@@ -7,7 +7,7 @@ use crate::assets::AssetSource;
 use crate::limits::Limits;
 use crate::mjcf_loader::Tree;
 
-/// Folders, next to the document: of images, of meshes and height fields, of models.
+/// Folders beside the document: images, meshes and height fields, models.
 pub(super) const IMAGES: &str = "tex";
 const MESHES: &str = "mesh";
 const MODELS: &str = "models";
@@ -22,7 +22,7 @@ const IMAGE_ATTRIBUTES: [&str; 7] = [
     "fileback",
 ];
 
-/// Writes a document as one, with what it names; `comment` stands before it.
+/// Writes a document as one, with the files that it names, after `comment`.
 pub(super) fn complete(
     document: &str,
     path: &str,
@@ -49,17 +49,17 @@ pub(super) fn complete(
     Ok(SceneFile { xml, files })
 }
 
-/// The files that a document names, and where they go.
+/// The files that a document names, and their new paths.
 struct Copies<'a> {
     tree: &'a Tree,
     assets: &'a dyn AssetSource,
     files: BTreeMap<String, Vec<u8>>,
-    /// Whether folders in names of files do not count.
+    /// Whether folders in names of files are ignored.
     strips: bool,
 }
 
 impl Copies<'_> {
-    /// Returns what stands in the folder for an attribute, if it is another value.
+    /// Returns the new value of an attribute, if it changes.
     fn replaced(&mut self, at: usize, attribute: &str, value: &str) -> Result<Option<String>, SceneFileError> {
         let kept = match (self.tree.nodes[at].name.as_str(), attribute) {
             ("compiler", "texturedir" | "meshdir" | "assetdir") => return Ok(Some(String::new())),
@@ -76,13 +76,13 @@ impl Copies<'_> {
             }
             _ => return Ok(None),
         };
-        // a model looks from its own folder
+        // a model's paths start at its own folder
         let inside = self.tree.model_of(at) > 0;
         Ok(Some(if inside { format!("../{kept}") } else { kept }))
     }
 
-    /// Takes a file along and returns its new path. Files of equal names, from different folders, are in folders that are numbered: what has no
-    /// name of its own is called after its file.
+    /// Includes a file and returns its new path. Files of equal names from different folders go into numbered folders. An element without
+    /// a name of its own is named after its file.
     fn copy(&mut self, at: usize, file: &str, folder: &str, setting: &str) -> Result<String, SceneFileError> {
         let own = file.rsplit(['/', '\\']).next().unwrap_or(file);
         let broken = |reason: String| SceneFileError::Asset {
@@ -111,7 +111,7 @@ impl Copies<'_> {
         Ok(name)
     }
 
-    /// Returns the folder of images or meshes for an element: that of the model in which it stands, or of the one that names that model.
+    /// Returns the folder of images or meshes for an element: that of its model, or of the model that names it.
     fn folder(&self, at: usize, names: &[&str]) -> &str {
         let mut model = Some(self.tree.model_of(at));
         while let Some(one) = model {
@@ -125,7 +125,7 @@ impl Copies<'_> {
     }
 }
 
-/// Returns the last value that the `compiler` sections below a root have for an attribute; of one section the last name counts.
+/// Returns the last value of an attribute in the `compiler` sections below a root. Within a section the last name counts.
 fn setting<'t>(tree: &'t Tree, root: usize, names: &[&str]) -> Option<&'t str> {
     let sections = tree.nodes[root].children.iter().map(|&at| &tree.nodes[at]);
     let sections = sections.filter(|node| node.name == "compiler");
