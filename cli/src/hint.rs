@@ -3,7 +3,7 @@
 use std::error::Error;
 use std::io::{self, ErrorKind};
 
-/// Returns advice on an error that comes from the file system.
+/// Returns advice on an error of the file system.
 pub fn hint(error: &(dyn Error + 'static)) -> Option<String> {
     let chain = std::iter::successors(Some(error), |&e| e.source());
     let kind = chain.filter_map(|e| e.downcast_ref::<io::Error>()).last()?.kind();

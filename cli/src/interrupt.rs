@@ -43,7 +43,7 @@ impl Interrupt {
     }
 }
 
-/// Tells whether a signal was ignored when the program was started, where the system says so.
+/// Returns whether a signal was ignored when the program started, if the system reports it.
 fn ignored(signal: i32) -> bool {
     let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
     let mask = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));
@@ -51,7 +51,7 @@ fn ignored(signal: i32) -> bool {
     mask.is_some_and(|mask| mask >> (signal - 1) & 1 == 1)
 }
 
-/// The error of a command that was interrupted: what it leaves behind.
+/// The error of an interrupted command, with what it left behind.
 #[derive(Debug)]
 pub struct Interrupted(pub String);
 

@@ -12,16 +12,16 @@ pub mod view;
 use std::ffi::OsString;
 use std::io;
 
-/// Runs a command line, of which the first argument is the name of the program, and returns the exit code of the process: 0 for success, 1 for an
-/// error, 2 for arguments that are none, 130 for a command that was interrupted. `program` is what users type to get here, where
-/// that is not the first argument.
+/// Runs a command line, whose first argument is the name of the program, and returns the exit code of the process: 0 for success, 1 for
+/// an error, 2 for invalid arguments, 130 for an interrupted command. `program` is what users type to start it, if that is not the first
+/// argument.
 ///
 /// It writes to the standard output and the standard error, and may end the process when it is interrupted twice.
 pub fn main_from(arguments: impl IntoIterator<Item = OsString>, program: Option<&'static str>) -> u8 {
     let command = match commands::parse(arguments, program) {
         Ok(command) => command,
         Err(e) => {
-            // help and the version, too; nobody may read it
+            // help and the version, too; the output may have no reader
             let _ = e.print();
             return u8::try_from(e.exit_code()).unwrap_or(2);
         }

@@ -11,7 +11,7 @@ macro_rules! say {
     };
 }
 
-/// Writes a line to the standard error and ignores whether anybody reads it.
+/// Writes a line to the standard error and ignores errors.
 macro_rules! note {
     ($($text:tt)*) => {{
         let line = $crate::print::harmless(format!($($text)*));

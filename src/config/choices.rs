@@ -18,7 +18,7 @@ macro_rules! choices {
                 match self { $(Self::$variant => $text),* }
             }
 
-            /// Returns the value with this name; `None` if there is none.
+            /// Returns the value with this name, if it exists.
             pub fn from_name(name: &str) -> Option<Self> {
                 match name { $($text => Some(Self::$variant),)* _ => None }
             }
@@ -58,15 +58,15 @@ choices! {
         /// No score; MIMo v1.
         #[default]
         None = "none",
-        /// Touching one's own body with the palms; MIMo v1.
+        /// Touching the own body with the palms; MIMo v1.
         SelfTouch = "self_touch",
-        /// Looking at one's own hands; MIMo v2.
+        /// Looking at the own hands; MIMo v2.
         HandRegard = "hand_regard",
         /// Reaching for a hovering ball with the right hand; MIMo v1.
         Reach = "reach",
         /// Standing up at the railing of a crib; MIMo v1.
         Standup = "standup",
-        /// Touching a part of one's own body with the right hand; MIMo v1.
+        /// Touching a part of the own body with the right hand; MIMo v1.
         SelfBody = "selfbody",
         /// Catching a falling ball with the right hand; MIMo v2.
         Catch = "catch",
@@ -95,7 +95,7 @@ choices! {
 }
 
 choices! {
-    /// How MIMo lies at the start of `roll_over` (`starting_position`).
+    /// MIMo's position at the start of `roll_over` (`starting_position`).
     StartingPosition {
         /// On his back.
         #[default]
@@ -106,7 +106,7 @@ choices! {
 }
 
 choices! {
-    /// Which of two infants in a custom scene learns (`learner`).
+    /// The infant that learns, of two in a custom scene (`learner`).
     Learner {
         /// The one in `mimo_location`.
         #[default]

@@ -191,7 +191,7 @@ impl Config {
             })
     }
 
-    /// Returns the first delay that is not a number of steps, or that would remember too much.
+    /// Returns the first delay that is not a whole number of steps, or that needs too much memory.
     fn impossible_delay(&self) -> Option<Conflict> {
         let delays = &self.delays;
         if delays.by_age && self.age.is_none() {

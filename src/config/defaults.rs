@@ -1,4 +1,4 @@
-//! Defaults of tasks, and what they exclude.
+//! Defaults of tasks, and their exclusions.
 
 use super::conflicts::Conflict;
 use super::table::KEYS;
@@ -6,8 +6,7 @@ use super::{ActuationModel, Behavior, BodyParts, Compat, Config, Learner, Scene,
 use crate::text::quoted;
 
 impl Config {
-    /// Gives keys that were left to their default (`given` tells of the others, by their place in the table) the default of
-    /// the behavior.
+    /// Sets keys that a file left out (`given` marks the others, by their index in the table) to the default of the behavior.
     pub(super) fn take_defaults(&mut self, given: impl Fn(usize) -> bool) {
         let Some(own) = of_task(self.behavior) else {
             return;

@@ -12,7 +12,7 @@ macro_rules! example {
     };
 }
 
-/// An example configuration, as it stands in `configs/`.
+/// An example configuration from `configs/`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Example {
     /// Name: `self_touch`, `hand_regard`, `test_installation`, or that of a task.

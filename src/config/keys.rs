@@ -1,4 +1,4 @@
-//! Keys, and how the table of them is read.
+//! Keys, and the macro that reads their table.
 
 use super::choices::{
     ActuationModel, Behavior, Compat, DelayUnit, EngineKind, FacialExpression, Learner, Limb, RendererKind,
@@ -100,7 +100,7 @@ pub struct Key {
 }
 
 impl Key {
-    /// Returns the key with this name; `None` if there is none.
+    /// Returns the key with this name, if it exists.
     pub fn named(name: &str) -> Option<&'static Self> {
         KEYS.iter().find(|key| key.name == name)
     }
@@ -136,8 +136,8 @@ macro_rules! config {
     })*) => {
         /// The configuration of an environment.
         ///
-        /// [`Config::default`] has the defaults of the API page, and [`Config::keys`] tells what each key accepts.
-        /// After changing fields, [`Config::validate`] tells whether the whole is still allowed.
+        /// [`Config::default`] has the defaults of the API page, and [`Config::keys`] lists the values of each key. After changing
+        /// fields, call [`Config::validate`] to check the whole.
         #[derive(Clone, Debug, PartialEq)]
         pub struct Config {
             $(

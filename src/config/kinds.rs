@@ -84,7 +84,7 @@ pub enum KeyKind {
     ChoiceOrFile {
         /// The names.
         names: &'static [&'static str],
-        /// How the path ends.
+        /// The ending of the path.
         ending: &'static str,
     },
     /// A list of one or more of the given names, each once.
@@ -137,7 +137,7 @@ impl KeyKind {
         matches!(self, Self::NoneOr { .. } | Self::NoneOrWhole { .. })
     }
 
-    /// Parses a YAML scalar: `plain` is false for text in quotes, which is text whatever it looks like.
+    /// Parses a YAML scalar. `plain` is false for quoted text, which is always text.
     pub(super) fn parse(&self, text: &str, plain: bool) -> Result<KeyValue, Misfit> {
         if self.allows_none() && (text == NONE || plain && NULL.contains(&text)) {
             return Ok(KeyValue::None);

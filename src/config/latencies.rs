@@ -1,4 +1,4 @@
-//! How late senses are at an age, by latencies that were measured in infants.
+//! Delays of senses by age, from latencies measured in infants.
 
 /// A latency at some ages: months and ms. It changes in a straight line between them, and stays before the first and after the last.
 pub(crate) type Latency = [[f64; 2]];
@@ -11,7 +11,7 @@ pub(crate) const SIGHT: &Latency = &[[0.0, 260.0], [3.45, 104.0]];
 /// Proceedings 28, for newborns; Smit et al. 2000, Clinical Neurophysiology 111, 901, for six months).
 pub(crate) const SKIN: &Latency = &[[0.0, 30.0], [6.0, 20.0]];
 
-/// Of balance: the wave p13 of the neck's muscles (Young et al. 2009, European Journal of Paediatric Neurology 13, 235, for newborns), which
+/// Balance: the wave p13 of the neck's muscles (Young et al. 2009, European Journal of Paediatric Neurology 13, 235, for newborns), which
 /// hardly changes.
 pub(crate) const BALANCE: &Latency = &[[0.0, 13.3]];
 

@@ -1,8 +1,8 @@
 //! The configuration of an environment: every key of the API page with its default and its errors.
 //!
-//! A configuration file is a flat YAML mapping; one key has a list of names. Keys left out have their documented default; a key that does not exist,
-//! stands twice or has a value that is not allowed is an error that names location, key, value and what is allowed.
-//! YAML 1.1's booleans (`True`, `yes`, `on` ...) are accepted as PyYAML accepts them; anchors, aliases and tags are not.
+//! A configuration file is a flat YAML mapping; one key has a list of names. Keys that are left out have their documented default. A key
+//! that does not exist, appears twice or has an invalid value is an error that names location, key, value and the allowed values. YAML
+//! 1.1's booleans (`True`, `yes`, `on` ...) are accepted as PyYAML accepts them; anchors, aliases and tags are not.
 //!
 //! ```
 //! use babybench::config::{Behavior, Scene};
@@ -220,7 +220,7 @@ impl Config {
         out
     }
 
-    /// Returns every key with what it accepts and means, in the order of [`Config::to_yaml`].
+    /// Returns every key with its values and meaning, in the order of [`Config::to_yaml`].
     pub fn keys() -> &'static [Key] {
         table::KEYS
     }
@@ -250,7 +250,7 @@ impl Config {
         self.touch_active && self.touch_scale > 0.0
     }
 
-    /// Checks every value by itself and against the others, as reading a file does.
+    /// Checks every value alone and against the others, as reading a file does.
     ///
     /// # Errors
     /// Returns the first value that is not allowed.

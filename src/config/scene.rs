@@ -37,7 +37,7 @@ impl Scene {
     pub const OWN: &'static [Self] = &[Self::Mobile, Self::Playroom];
     /// The names of [`Self::ALL`] and [`Self::OWN`] in a configuration file.
     pub const NAMES: &'static [&'static str] = &["base", "crib", "cubes", "mobile", "playroom"];
-    /// How the path of a document ends.
+    /// The ending of a document's path.
     pub const ENDING: &'static str = ".xml";
 
     /// Returns the name in a configuration: that of a scene of the library, or a path.
@@ -52,8 +52,8 @@ impl Scene {
         }
     }
 
-    /// Returns the scene of the library with this name, or else the document at this path; `None` if it is neither the one nor ends in
-    /// `.xml`.
+    /// Returns the scene of the library with this name, or otherwise the document at this path; `None` if it is neither a name nor ends
+    /// in `.xml`.
     pub fn from_name(name: &str) -> Option<Self> {
         let known = Self::ALL.iter().chain(Self::OWN).find(|scene| scene.name() == name);
         let file = || name.ends_with(Self::ENDING).then(|| Self::File(name.to_string()));

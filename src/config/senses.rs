@@ -1,4 +1,4 @@
-//! How senses mature: delays and eyes.
+//! Settings of maturing senses: delays and eyes.
 
 use super::choices::DelayUnit;
 use super::latencies::{Latency, latency};
@@ -36,7 +36,7 @@ impl Config {
         own.map(|[w, h]| [w.or(width), h.or(height)].map(|side| side.unwrap_or(self.vision_resolution) as usize))
     }
 
-    /// Returns how many steps of the environment late a sense is, with its own delay, or that of MIMo's age, or that of all senses.
+    /// Returns the delay of a sense, in steps of the environment: its own, or that of MIMo's age, or that of all senses.
     pub(crate) fn sense_delay(&self, own: Option<f64>, of_age: &Latency) -> usize {
         match (own, self.age) {
             (None, Some(age)) if self.delays.by_age => rounded(latency(of_age, age) / Delays::step_ms(self.frame_skip)),
@@ -44,7 +44,7 @@ impl Config {
         }
     }
 
-    /// Iterates over the rates of senses that have one of their own, Hz, by key.
+    /// Iterates over the senses' own rates, Hz, by key.
     pub(crate) fn rates(&self) -> impl Iterator<Item = (&'static str, f64)> {
         let rates = [("vision_rate", self.vision_rate), ("touch_rate", self.touch_rate)];
         rates.into_iter().filter_map(|(key, rate)| Some((key, rate?)))

@@ -153,7 +153,7 @@ impl<'de> DeserializeSeed<'de> for ValueSeed {
         if deserializer.is_human_readable() {
             return deserializer.deserialize_any(self);
         }
-        // binary formats need to be told what comes
+        // binary formats need the type of the value
         match self.key.kind {
             KeyKind::Bool => deserializer.deserialize_bool(self),
             KeyKind::Whole { .. } => deserializer.deserialize_u64(self),

@@ -1,5 +1,5 @@
-//! The table of keys: what each is called, its type, its default, what it accepts and what it means. The fields of [`Config`] and of its groups,
-//! reading, writing, ranges and documentation all follow from it.
+//! The table of keys: name, type, default, accepted values and meaning. The fields of [`Config`] and of its groups, reading, writing,
+//! ranges and documentation all follow from it.
 
 use super::choices::{
     ActuationModel, Behavior, Compat, DelayUnit, EngineKind, FacialExpression, Learner, Limb, RendererKind,

@@ -13,7 +13,7 @@ use granit_parser::{Event, Marker, Options, Parser, ScalarStyle, ScanError};
 /// Line and column, both counted from 1.
 pub(super) type Position = (u32, u32);
 
-/// Overwrites `config` with the keys of the text; returns where the value of each key of [`KEYS`] stands.
+/// Overwrites `config` with the keys of the text. Returns the position of the value of each key of [`KEYS`].
 pub(super) fn read(text: &str, file: &str, config: &mut Config) -> Result<Vec<Option<Position>>, ConfigError> {
     let mut reader = Reader {
         file,
@@ -116,7 +116,7 @@ impl<'t> Reader<'t> {
         }
     }
 
-    /// Reads the next key, as an index into [`KEYS`], its value and where that stands; `None` after the last.
+    /// Reads the next key, as an index into [`KEYS`], its value and the value's position; `None` after the last.
     fn entry(&mut self, seen: &[Option<Position>]) -> Result<Option<(usize, KeyValue, Position)>, ConfigError> {
         let (name, at) = match self.next()? {
             (Event::MappingEnd, _) => return Ok(None),
@@ -148,7 +148,7 @@ impl<'t> Reader<'t> {
         Ok(Some((index, value, at)))
     }
 
-    /// Reads the value of a key, and where it stands.
+    /// Reads the value of a key, and its position.
     fn value(&mut self, key: &'static Key) -> Result<(KeyValue, Position), ConfigError> {
         let (event, at) = self.next()?;
         let nested = match event {
@@ -172,7 +172,7 @@ impl<'t> Reader<'t> {
         Err(refusal(key, Misfit::WrongType, nested.to_string(), self.location(at)))
     }
 
-    /// Reads the names of a list that begins at `start`.
+    /// Reads the names of a list that starts at `start`.
     fn list(&mut self, key: &'static Key, start: Position) -> Result<KeyValue, ConfigError> {
         let mut names = Vec::new();
         loop {

@@ -31,7 +31,7 @@ use crate::runs::RecordError;
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum BenchmarkError {
-    /// The plan is not one.
+    /// The plan is invalid.
     #[error("{}:{line}: {reason}", path.display())]
     Plan {
         /// The file.
@@ -41,7 +41,7 @@ pub enum BenchmarkError {
         /// Description of the fault.
         reason: String,
     },
-    /// The file system refuses.
+    /// The file system returned an error.
     #[error("{}: {source}", path.display())]
     Io {
         /// The file or folder.
@@ -49,10 +49,10 @@ pub enum BenchmarkError {
         /// The error of the system.
         source: io::Error,
     },
-    /// A configuration is not allowed.
+    /// A configuration is invalid.
     #[error(transparent)]
     Config(#[from] ConfigError),
-    /// A run fails.
+    /// A run failed.
     #[error("{run}: {source}")]
     Run {
         /// The name of the run.
@@ -63,9 +63,9 @@ pub enum BenchmarkError {
     /// The progress callback stopped the benchmark.
     #[error("stopped after {done} of {planned} runs; they are kept, and the same command continues from there")]
     Stopped {
-        /// Number of runs that are done and kept.
+        /// Number of finished runs, which are kept.
         done: usize,
-        /// Number of runs that are planned.
+        /// Number of planned runs.
         planned: usize,
     },
 }
@@ -84,7 +84,7 @@ pub struct Benchmark {
     pub name: String,
     /// The version of babybench.
     pub babybench: String,
-    /// The commit that it was built from, if whoever built it said so (the variable `BABYBENCH_COMMIT`).
+    /// The commit that it was built from, if the build named it (the variable `BABYBENCH_COMMIT`).
     pub commit: Option<String>,
     /// The processor and the system on which it ran.
     pub platform: String,
@@ -97,14 +97,14 @@ pub struct Benchmark {
 }
 
 impl Benchmark {
-    /// Runs a plan into a folder, `jobs` runs at a time. Runs that the folder has are not run again. `progress` is told of every step
-    /// and can break off the benchmark there.
+    /// Runs a plan into a folder, `jobs` runs at a time. Finished runs in the folder are not repeated. `progress` is called after every
+    /// step and can stop the benchmark.
     ///
     /// The folder gets `runs/NAME.json` and `records/NAME` for each run, then `benchmark.json`, `benchmark.md` and, by
     /// [`benchmark_page`](crate::report::benchmark_page), a page.
     ///
     /// # Errors
-    /// The first that occurs: a configuration that is not allowed, an environment or a policy that fails, the file system.
+    /// The first that occurs: an invalid configuration, or an error of an environment, a policy or the file system.
     pub fn run(
         plan: &BenchmarkPlan,
         dir: &Path,
@@ -168,8 +168,8 @@ fn policy_error(error: PolicyError) -> EpisodeError {
     EpisodeError::Policy(error)
 }
 
-/// Runs all jobs in threads, and returns the results that there are, in the order of the jobs, with the first error: after one, no
-/// job is begun.
+/// Runs all jobs in threads, and returns the existing results, in the order of the jobs, with the first error. After an error no job is
+/// started.
 fn side_by_side(
     all: &[Job],
     threads: usize,
@@ -194,7 +194,7 @@ fn side_by_side(
         let threads: Vec<_> = (0..threads.clamp(1, all.len().max(1)))
             .map(|_| scope.spawn(work))
             .collect();
-        // a panic in a run is the caller's, as without threads
+        // a panic in a run reaches the caller, as without threads
         let join = |t: std::thread::ScopedJoinHandle<'_, _>| t.join().unwrap_or_else(|e| std::panic::resume_unwind(e));
         threads.into_iter().map(join).collect()
     });

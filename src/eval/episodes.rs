@@ -12,7 +12,7 @@ use crate::env::{Blueprint, Env, EnvError, Info};
 use crate::policy::{Policy, PolicyError};
 use crate::runs::for_evaluation;
 
-/// The plan of an evaluation: number and length of episodes, and what is recorded.
+/// The plan of an evaluation: number and length of episodes, and videos.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Plan {
     /// Number of episodes; episode k is seeded with the configuration's seed + k.
@@ -28,7 +28,7 @@ pub struct Plan {
 }
 
 impl Plan {
-    /// Returns how many episodes run in parallel: as many as asked for, but no more than there are episodes and cores.
+    /// Returns how many episodes run in parallel: the requested number, limited by episodes and cores.
     pub fn parallel(&self) -> usize {
         let cores = std::thread::available_parallelism().map_or(1, usize::from);
         let episodes = usize::try_from(self.episodes).unwrap_or(usize::MAX);
@@ -46,7 +46,7 @@ pub enum EpisodeError {
          parallel; use --jobs 1"
     )]
     Jobs,
-    /// The environment fails.
+    /// The environment returned an error.
     #[error("episode {episode}: {source}")]
     Env {
         /// The episode.
@@ -62,10 +62,10 @@ pub enum EpisodeError {
         /// Number of episodes that were planned.
         planned: u64,
     },
-    /// The policy fails.
+    /// The policy returned an error.
     #[error(transparent)]
     Policy(#[from] PolicyError),
-    /// The observer of the episodes fails.
+    /// The observer of the episodes returned an error.
     #[error(transparent)]
     Observer(Box<dyn std::error::Error + Send + Sync>),
     /// A log or a video cannot be written.
@@ -73,12 +73,12 @@ pub enum EpisodeError {
     Evaluation(#[from] EvaluationError),
 }
 
-/// Watches episodes, and steps the environment in them: a recorder, or nothing but steps.
+/// An observer of episodes that steps their environment: a recorder, or one that only steps.
 pub trait Observer {
-    /// An episode begins; the environment has been reset, and the policy has begun.
+    /// Called at the start of an episode, after the environment was reset and the policy has begun.
     ///
     /// # Errors
-    /// Any error that keeps the evaluation from going on.
+    /// Errors that end the evaluation.
     fn begin(&mut self, env: &Env, episode: u64) -> Result<(), EpisodeError> {
         let _ = (env, episode);
         Ok(())
@@ -87,7 +87,7 @@ pub trait Observer {
     /// Applies an action of episode `episode` to the environment.
     ///
     /// # Errors
-    /// Those of the step, and whatever else keeps the evaluation from going on.
+    /// Those of the step, and others that end the evaluation.
     fn step(&mut self, env: &mut Env, action: &[f32], episode: u64) -> Result<(), EpisodeError> {
         let failed = |source| EpisodeError::Env {
             episode,
@@ -96,17 +96,17 @@ pub trait Observer {
         env.step(action).map(|_| ()).map_err(failed)
     }
 
-    /// The episode ends.
+    /// Called at the end of an episode.
     ///
     /// # Errors
-    /// Any error that keeps the evaluation from going on.
+    /// Errors that end the evaluation.
     fn end(&mut self, env: &Env) -> Result<(), EpisodeError> {
         let _ = env;
         Ok(())
     }
 }
 
-/// Watches nothing.
+/// An observer that only steps.
 struct Unwatched;
 
 impl Observer for Unwatched {}
@@ -133,11 +133,11 @@ impl Observer for crate::runs::Recorder {
     }
 }
 
-/// Runs evaluation episodes into the configuration's `save_dir` and returns the last information of each. `progress` is
-/// told after every step and can break off the evaluation there; each job has a policy of its own.
+/// Runs evaluation episodes into the configuration's `save_dir` and returns the last information of each. `progress` is called after
+/// every step and can stop the evaluation. Each job has a policy of its own.
 ///
 /// # Errors
-/// The first that occurs; the others are given up.
+/// The first that occurs. Other episodes are abandoned.
 pub fn run_episodes(
     blueprint: &Blueprint,
     plan: &Plan,
@@ -147,10 +147,10 @@ pub fn run_episodes(
     run_episodes_watched(blueprint, plan, policy, &|| Box::new(Unwatched), progress)
 }
 
-/// Runs evaluation episodes as [`run_episodes`] does, each job watched by an observer of its own.
+/// Runs evaluation episodes as [`run_episodes`] does, with an observer for each job.
 ///
 /// # Errors
-/// The first that occurs; the others are given up.
+/// The first that occurs. Other episodes are abandoned.
 pub fn run_episodes_watched<'o>(
     blueprint: &Blueprint,
     plan: &Plan,
@@ -204,7 +204,7 @@ pub fn run_episodes_watched<'o>(
 struct Schedule<'a> {
     /// Returns the next episode, if there is one.
     next: &'a (dyn Fn() -> Option<u64> + Sync),
-    /// Reports a step; returns whether to go on.
+    /// Reports a step and returns whether to continue.
     step: &'a (dyn Fn() -> ControlFlow<()> + Sync),
     /// Reports a finished episode with its last information.
     done: &'a (dyn Fn(u64, Info) + Sync),

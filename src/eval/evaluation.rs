@@ -46,7 +46,7 @@ pub enum EvaluationError {
         /// The episode.
         episode: u64,
     },
-    /// The video cannot be made.
+    /// The video cannot be written.
     #[error("cannot make the video {}: {source}", path.display())]
     Video {
         /// The file.
@@ -60,13 +60,13 @@ pub enum EvaluationError {
 /// without one by that of `compat: api`.
 ///
 /// # Errors
-/// No log, a damaged one, one without score.
+/// A log that is missing, damaged, or without a score.
 pub fn eval_logs(save_dir: impl AsRef<Path>) -> Result<Score, EvaluationError> {
     let compat = scene_compat(save_dir.as_ref());
     score(training_path(save_dir), None, compat)
 }
 
-/// Returns the score of a training log, which must be of a behavior, if one is given.
+/// Returns the score of a training log, which must be of the given behavior, if any.
 fn score(path: PathBuf, behavior: Option<&str>, compat: Compat) -> Result<Score, EvaluationError> {
     // under compat: reference the oldest never counts
     let records = read_recent(&path, MAX_EPISODES + 1)?.records;
@@ -179,7 +179,7 @@ impl<'f> Evaluation<'f> {
     /// Returns the score of the training log.
     ///
     /// # Errors
-    /// No log, a damaged one, one of another behavior, one without score.
+    /// A log that is missing, damaged, of another behavior, or without a score.
     pub fn eval_logs(&self) -> Result<Score, EvaluationError> {
         score(training_path(&self.save_dir), Some(&self.behavior), self.compat)
     }
@@ -195,7 +195,7 @@ impl<'f> Evaluation<'f> {
     /// Records a step of the environment: positions, information and, for a video, a frame.
     ///
     /// # Errors
-    /// The video fails.
+    /// Errors of the video.
     pub fn eval_step(&mut self, env: &Env) -> Result<(), EvaluationError> {
         if let Some(film) = &mut self.film {
             film.frame(env).map_err(|source| {

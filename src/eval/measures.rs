@@ -1,5 +1,5 @@
-//! Measures of behavior, computed from records: what the hands touch, how often and for how long, how smoothly and how symmetrically
-//! MIMo moves. The guide defines each by a formula (`docs/guide/benchmark.md`).
+//! Measures of behavior, computed from records: contacts of the hands, their number and duration, smoothness and symmetry of movements.
+//! The guide defines each by a formula (`docs/guide/benchmark.md`).
 
 mod movement;
 mod regards;
@@ -26,7 +26,7 @@ pub struct Measures {
     pub steps: u64,
     /// Simulated time, of all episodes, s.
     pub seconds: f64,
-    /// Parts that both palms touch in an episode, each palm's counted for itself.
+    /// Parts that both palms touch in an episode, counted separately for each palm.
     pub parts_per_episode: Option<f64>,
     /// Touches of the right hand.
     pub right_hand: HandMeasures,
@@ -34,15 +34,15 @@ pub struct Measures {
     pub left_hand: HandMeasures,
     /// Share of the time in which the hands touch each other.
     pub hand_to_hand: f64,
-    /// Share of the time in which a hand touches the body, so that both feel it; both hands together.
+    /// Share of the time in which at least one hand touches the body, so that both sides feel it.
     pub double_touch: f64,
-    /// Touches of the right hand less those of the left, over their sum; 0 without touches.
+    /// Difference of touches of the right and the left hand, over their sum; 0 without touches.
     pub handedness: f64,
     /// Smoothness of the movements: minus the logarithm of dimensionless jerk, mean over the joints that move. Greater is smoother.
     pub smoothness: Option<f64>,
     /// Symmetry of the movements of right and left limbs: 1 for mirror images, 0 for independence, -1 for opposites.
     pub symmetry: Option<f64>,
-    /// Share of the time in which each eye has each hand in view, by the counters of the information, if the behavior is `hand_regard`.
+    /// Share of the time in which each eye has each hand in view, by the counters of the information, for the behavior `hand_regard`.
     pub regards: Option<PerEyeAndHand<f64>>,
     /// Share of the recorded images in which pixels of a hand lie within 15 degrees of the axis of an eye, if segmentation was recorded.
     pub hands_seen: Option<PerEyeAndHand<f64>>,
@@ -58,7 +58,7 @@ pub struct HandMeasures {
     pub duration: f64,
     /// Share of the time in which the hand touches the body.
     pub share: f64,
-    /// The same by region and side of what is touched: `head`, `trunk`, `own arm`, `other leg`, ...
+    /// The same by region and side of the touched part: `head`, `trunk`, `own arm`, `other leg`, ...
     pub regions: BTreeMap<String, RegionMeasures>,
 }
 
@@ -78,7 +78,7 @@ impl Measures {
     /// Computes the measures of an episode of a record.
     ///
     /// # Errors
-    /// No such episode, an archive that cannot be read or does not fit its description.
+    /// An episode that does not exist, or an archive that cannot be read or does not match its description.
     pub fn of_episode(record: &Record, episode: u64) -> Result<Self, RecordError> {
         let npz = record.npz(episode)?;
         let unfit = |reason: &str| RecordError::Unfit {
@@ -216,12 +216,12 @@ impl HandMeasures {
     }
 }
 
-/// Returns a quotient, 0 where nothing is divided by.
+/// Returns a quotient, or 0 if the divisor is 0.
 fn ratio(a: f64, b: f64) -> f64 {
     if b == 0.0 { 0.0 } else { a / b }
 }
 
-/// Measures one hand; returns the number of its touches, too.
+/// Measures one hand. Also returns the number of its touches.
 fn hand_measures(steps: &Steps, hand: usize, dt: f64, seconds: f64) -> (HandMeasures, usize) {
     let measure = |touching: &[bool]| {
         let bouts = Bouts::of(touching, dt);

@@ -1,4 +1,4 @@
-//! Submissions to the BabyBench competition: one archive with what its page asks for, checked before it is written.
+//! Submissions to the BabyBench competition: one archive with the required files, checked before it is written.
 //!
 //! The page (babybench.github.io/2025/submission) asks for an extended abstract of two pages, the log of the training, and the logs of ten
 //! evaluation episodes; videos may be added.
@@ -25,7 +25,7 @@ const FILE: u64 = 1 << 30;
 /// 1980-01-01, the first day that an archive can name.
 const EPOCH: i64 = 315_532_800;
 
-/// An error that keeps a submission from being packed.
+/// An error in packing a submission.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum PackError {
@@ -38,7 +38,7 @@ pub enum PackError {
         /// The cause.
         source: LogError,
     },
-    /// A log does not belong to the others.
+    /// A log does not match the others.
     #[error("{}: {reason}", path.display())]
     Unfit {
         /// The file.
@@ -46,7 +46,7 @@ pub enum PackError {
         /// Description of the fault.
         reason: String,
     },
-    /// The abstract is no PDF document.
+    /// The abstract is not a PDF document.
     #[error("{}: this is not a PDF document; a submission has an extended abstract of two pages", path.display())]
     Abstract {
         /// The file.
@@ -60,7 +60,7 @@ pub enum PackError {
         /// The error of the system.
         source: io::Error,
     },
-    /// The archive cannot be made.
+    /// The archive cannot be written.
     #[error("cannot make the archive: {0}")]
     Archive(#[from] rawzip::Error),
 }
@@ -82,14 +82,14 @@ pub struct Packed {
     pub score: Score,
     /// The names of the files in the archive.
     pub files: Vec<String>,
-    /// Requirements of the page that are not met, and unusual things: a sentence each.
+    /// A sentence for each unmet requirement of the page and for each oddity.
     pub notices: Vec<String>,
 }
 
-/// Checks the folder of a run, and packs what a submission needs of it into an archive.
+/// Checks the folder of a run, and packs the files of a submission into an archive.
 ///
 /// # Errors
-/// Logs that are missing, damaged or of different behaviors, an abstract that is no PDF document; errors of the file system.
+/// Logs that are missing, damaged or of different behaviors, an abstract that is not a PDF document; errors of the file system.
 pub fn pack(save_dir: &Path, options: &PackOptions, archive: &Path) -> Result<Packed, PackError> {
     let score = eval_logs(save_dir)?;
     let mut notices = Vec::new();

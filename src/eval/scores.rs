@@ -1,7 +1,7 @@
 //! The preliminary achievement scores of a training log, and their parts.
 //!
-//! As the kit computes them, but that every episode counts: the kit leaves out the first record of a log, as it starts its logs
-//! with an empty one. Under `compat: reference` the oldest of the last 10,001 records is left out, whatever it holds.
+//! They are computed like the kit's, except that every episode counts: the kit leaves out the first record of a log, because its logs
+//! start with an empty one. Under `compat: reference` the oldest of the last 10,001 records is left out, whatever it holds.
 
 mod serial;
 
@@ -20,14 +20,14 @@ use crate::physics::world::ContactRules;
 /// Maximum number of records that count.
 pub const MAX_EPISODES: usize = 10_000;
 
-/// An error that leaves a log without a score.
+/// An error in scoring a log.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[non_exhaustive]
 pub enum ScoreError {
-    /// There are no records.
+    /// The log has no records.
     #[error("the training log has no records: train for at least two episodes, then score")]
     Empty,
-    /// There are no steps in the records that count.
+    /// The counted records have no steps.
     #[error(
         "the training log has no steps that count ({records} records; under compat: reference the oldest never counts): \
          train for at least two episodes, then score"
@@ -36,7 +36,7 @@ pub enum ScoreError {
         /// Records in the log.
         records: usize,
     },
-    /// The log is of no behavior that has a score.
+    /// The behavior of the log has no score.
     #[error("the training log is not of a behavior with a score: self_touch or hand_regard")]
     NoBehavior,
 }
@@ -50,8 +50,8 @@ pub struct Score {
     pub episodes: usize,
     /// Number of steps in these records.
     pub steps: u64,
-    /// Mean number of parts that both hands touch in an episode, each hand's counted for itself; none for `hand_regard`. The score is
-    /// the union of all episodes, which a rare touch of chance raises as much as a habit; this is not.
+    /// Mean number of parts that both hands touch in an episode, counted separately for each hand; none for `hand_regard`. The score is
+    /// the union of all episodes, which a rare chance touch raises as much as a habit; this mean is not.
     pub parts_per_episode: Option<f64>,
     /// The parts of the score.
     pub parts: ScoreParts,
@@ -65,7 +65,7 @@ pub enum ScoreParts {
         /// Geoms touched by each hand, ascending.
         touched: PerHand<Vec<usize>>,
     },
-    /// How long the hands were in view.
+    /// The times in which hands were in view.
     HandRegard {
         /// Number of steps for each eye and hand.
         counts: PerEyeAndHand<u64>,
@@ -73,7 +73,7 @@ pub enum ScoreParts {
 }
 
 impl Score {
-    /// Computes the score of the records of a training log, of which those count that [`Score::counted`] returns.
+    /// Computes the score of the records of a training log that [`Score::counted`] returns.
     ///
     /// # Errors
     /// A log without records, steps or behavior.
@@ -115,7 +115,7 @@ impl Score {
         })
     }
 
-    /// Computes the score of the episodes of a training that had ended after `steps` steps; logs of different length compare by it.
+    /// Computes the score of the episodes of a training that had ended after `steps` steps, to compare logs of different lengths.
     ///
     /// # Errors
     /// As [`Score::new`].
@@ -128,7 +128,7 @@ impl Score {
         Self::new(records.get(..ended).unwrap_or_default(), compat)
     }
 
-    /// Leaves out the geoms that no hand can reach in the scene of `skin`, which the log must be of.
+    /// Leaves out the geoms that no hand can reach in the scene of `skin`, which must be the log's.
     #[must_use]
     pub fn within_reach(mut self, skin: &Touchables) -> Self {
         if let ScoreParts::SelfTouch { touched } = &mut self.parts {
@@ -141,7 +141,7 @@ impl Score {
         self
     }
 
-    /// Returns the records that count: the last 10,000, without the empty record with which the kit starts its logs; under
+    /// Returns the records that count: the last 10,000, without the empty record at the start of the kit's logs; under
     /// [`Compat::Reference`] without the first record of the log, whatever it holds.
     pub fn counted(records: &[Info], compat: Compat) -> &[Info] {
         let left_out = match compat {
@@ -158,12 +158,12 @@ impl Score {
         touched as f64 / (2 * PARTS) as f64
     }
 
-    /// Returns the score that one episode would have alone; `None` without steps or behavior.
+    /// Returns the score of a single episode; `None` without steps or behavior.
     pub fn of_episode(record: &Info, steps: u64) -> Option<f64> {
         record.behavior.score(steps)
     }
 
-    /// Returns the shares of the steps in which each eye had each hand in view, if the behavior is `hand_regard`.
+    /// Returns the shares of the steps in which each eye had each hand in view, for the behavior `hand_regard`.
     pub fn fractions(&self) -> Option<PerEyeAndHand<f64>> {
         match self.parts {
             ScoreParts::HandRegard { counts } => Some(counts.to_array().map(|c| c as f64 / self.steps as f64).into()),
@@ -221,7 +221,7 @@ impl Score {
     }
 }
 
-/// Returns the score of the geoms that each hand has touched; a hand has no more than its parts.
+/// Returns the score of the geoms that each hand has touched, limited to the parts of a hand.
 fn of_touched(touched: &PerHand<Vec<usize>>) -> f64 {
     let number: usize = touched.each_ref().iter().map(|t| t.len().min(PARTS)).sum();
     number as f64 / (2 * PARTS) as f64

@@ -1,4 +1,4 @@
-//! Arguments of commands that run environments with random actions, also many at once.
+//! Arguments of commands that run one or many environments with random actions.
 
 use babybench::policy::{NoisePolicy, Policy, RandomPolicy};
 use babybench::spaces::{ActionNoise, Noise};
@@ -12,7 +12,7 @@ use crate::print::note;
 /// The number of environments and of threads.
 #[derive(Args)]
 pub struct Many {
-    /// Number of environments to run at once; the seed of each is one more than that of the one before
+    /// Number of environments to run at once; environment i gets the seed plus i
     #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = count::<usize>)]
     envs: Option<usize>,
     /// Number of threads that step them; one for each core by default. Results do not depend on it
@@ -26,7 +26,7 @@ impl Many {
         self.envs
     }
 
-    /// Returns how the vector is built.
+    /// Returns the options of the vector.
     pub fn options(&self, autoreset: AutoresetMode) -> VectorOptions {
         VectorOptions {
             autoreset,
@@ -36,7 +36,7 @@ impl Many {
     }
 }
 
-/// Says that there are fewer threads than asked for, if so.
+/// Prints a note if there are fewer threads than requested.
 pub fn say_threads(envs: &VectorEnv) {
     if let Some(clipped) = envs.clipped_threads() {
         note!("note: {clipped}");
@@ -80,15 +80,15 @@ impl Babbling {
     }
 }
 
-/// Random actions of many environments, in each the same as alone.
+/// Random actions of many environments, each with the same actions as alone.
 pub struct ManyBabbling {
-    /// None if actions are white.
+    /// `None` for white noise.
     noises: Vec<ActionNoise>,
     action: Vec<f32>,
 }
 
 impl ManyBabbling {
-    /// Begins anew in the environments that began an episode: all, or where `mask` is true.
+    /// Restarts in the environments that started an episode: all, or where `mask` is true.
     pub fn begin(&mut self, envs: &mut VectorEnv, mask: Option<&[bool]>) -> Result<(), VectorError> {
         envs.start_noises(&mut self.noises, mask)
     }

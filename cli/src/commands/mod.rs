@@ -57,9 +57,9 @@ pub enum Command {
     Render(render::Render),
     /// Write a custom scene to start from, or check one
     Scene(scene::Scene),
-    /// Simulate any MJCF model, with or without an infant, and write what it does as arrays or a video
+    /// Simulate any MJCF model, with or without an infant, and write arrays or a video
     Simulate(simulate::Simulate),
-    /// Show MIMo in a browser while he lives: turn, pull, stop, go step by step
+    /// Show MIMo alive in a browser: turn the camera, pull him, pause, go step by step
     View(view::ViewArgs),
     /// Replay a recording (.npz) from its start with its actions
     Replay(replay::ReplayArgs),
@@ -67,9 +67,9 @@ pub enum Command {
     Benchmark(benchmark::BenchmarkArgs),
     /// Measure what the hands touched, and how MIMo moved, in a record
     Measure(measure::MeasureArgs),
-    /// Write what MIMo would feel and see in a motion: joint angles over time, from a video or a capture
+    /// Record what MIMo would feel and see in a motion: joint angles over time, from a video or a motion capture
     Senses(senses::Senses),
-    /// Check that everything works here, and write a scene, a log and a short video
+    /// Check that everything works on this machine, and write a scene, a log and a short video
     TestInstallation(test_installation::TestInstallation),
     /// Train with the random policy: log episodes with random actions in the configuration's save_dir
     Train(train::Train),
@@ -77,7 +77,7 @@ pub enum Command {
     Score(score::ScoreArgs),
     /// Write a page about a run: score, learning curve, touched parts or hands in view, key frames of the video
     Report(report::ReportArgs),
-    /// Check a run and pack a submission to the BabyBench competition of it
+    /// Check a run and pack it as a submission to the BabyBench competition
     Pack(pack::PackArgs),
     /// Run evaluation episodes of a policy, with logs and videos in the configuration's save_dir
     Evaluate(evaluate::Evaluate),
@@ -102,8 +102,7 @@ fn parse_compat(text: &str) -> Result<Compat, String> {
 }
 
 impl Source {
-    /// Builds the environment's blueprint. `compat` is that of a configuration that does
-    /// not say.
+    /// Builds the environment's blueprint. `compat` is the default for configurations without the key.
     fn blueprint(&self, compat: Compat) -> Result<Blueprint, Box<dyn Error>> {
         self.blueprint_with(compat, None)
     }
@@ -115,7 +114,7 @@ impl Source {
         self.build(config)
     }
 
-    /// Reads the configuration; `compat` is that of one that does not say.
+    /// Reads the configuration. `compat` is the default for configurations without the key.
     fn read(&self, compat: Compat) -> Result<Config, Box<dyn Error>> {
         let base = Config {
             compat,
@@ -146,12 +145,12 @@ impl Source {
             ..BlueprintOptions::default()
         };
         let built = Blueprint::with(config, options);
-        // a texture that cannot be read is the fault of the folder, whenever it is drawn
+        // an unreadable texture is an error of the folder, whenever it is drawn
         let checked = built.and_then(|blueprint| blueprint.scenery().map(|_| blueprint));
         Ok(checked.map_err(|e| format!("--assets {}: {e}", dir.display()))?)
     }
 
-    /// Returns the assets that the blueprint is built from.
+    /// Returns the assets of the blueprint.
     fn assets(&self) -> Result<Arc<dyn AssetSource>, Box<dyn Error>> {
         Ok(match &self.assets {
             Some(dir) => Arc::new(
@@ -186,7 +185,7 @@ fn progress_bar(steps: u64, quiet: bool) -> Result<ProgressBar, Box<dyn Error>> 
     Ok(bar)
 }
 
-/// Reads the arguments of a command line; `program` replaces the first in what is told of its use.
+/// Reads the arguments of a command line. `program` replaces the first one in usage texts.
 pub fn parse(
     arguments: impl IntoIterator<Item = OsString>,
     program: Option<&'static str>,
@@ -201,7 +200,7 @@ pub fn parse(
 }
 
 impl Command {
-    /// Does what it says.
+    /// Runs the command.
     pub fn run(self) -> Result<(), Box<dyn Error>> {
         match self {
             Self::Run(c) => c.run(),

@@ -17,7 +17,7 @@ pub struct PackArgs {
     /// The extended abstract, a PDF document of two pages
     #[arg(long = "abstract", value_name = "PDF")]
     extended_abstract: Option<PathBuf>,
-    /// Put the videos of the evaluation into the archive, too
+    /// Include the videos of the evaluation
     #[arg(long)]
     videos: bool,
     /// The archive

@@ -1,4 +1,4 @@
-//! Arguments of commands that record what they run.
+//! Arguments of commands that can record.
 
 use std::io;
 use std::path::PathBuf;
@@ -17,7 +17,7 @@ pub struct Recording {
     /// with the same bits
     #[arg(long, value_name = "DIR")]
     record: Option<PathBuf>,
-    /// Record all senses as observed, too, but for the images
+    /// Also record all senses as observed, except the images
     #[arg(long, requires = "record")]
     record_senses: bool,
     /// Record what both eyes observe in every K-th step
@@ -26,12 +26,12 @@ pub struct Recording {
 }
 
 impl Recording {
-    /// Returns the folder, if anything is recorded.
+    /// Returns the folder, if recording is on.
     pub fn folder(&self) -> Option<&PathBuf> {
         self.record.as_ref()
     }
 
-    /// Makes the recorder, if anything is recorded; `policy` says what acts.
+    /// Creates the recorder, if recording is on. `policy` is the name of the policy.
     pub fn recorder(&self, env: &Env, policy: &str) -> Result<Option<Recorder>, RecordError> {
         let folder = self.record.as_ref();
         folder
@@ -39,7 +39,7 @@ impl Recording {
             .transpose()
     }
 
-    /// Makes the recorder of a vector, if anything is recorded; `policy` says what acts.
+    /// Creates the recorder of a vector, if recording is on. `policy` is the name of the policy.
     pub fn recorder_of_many(&self, envs: &VectorEnv, policy: &str) -> Result<Option<VectorRecorder>, RecordError> {
         let folder = self.record.as_ref();
         folder
@@ -55,7 +55,7 @@ impl Recording {
         }
     }
 
-    /// Says what can be done with what was recorded, if anything was.
+    /// Prints what can be done with the record, if there is one.
     pub fn say_next(&self) -> io::Result<()> {
         let Some(folder) = &self.record else { return Ok(()) };
         let word = word(folder.display());

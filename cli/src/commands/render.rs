@@ -21,8 +21,8 @@ use crate::print::say;
 pub struct Render {
     #[command(flatten)]
     source: Source,
-    /// Camera: corner, top, side1, side2, closeup, eye_left or eye_right. Cameras see sharply, those of the eyes, too; what MIMo sees at
-    /// his age is --observed
+    /// Camera: corner, top, side1, side2, closeup, eye_left or eye_right. Cameras are sharp, also those of the eyes; --observed draws
+    /// what MIMo sees at his age
     #[arg(long, value_name = "NAME", default_value = "corner")]
     camera: String,
     /// Width and height in pixels; render_size of the configuration by default
@@ -31,7 +31,7 @@ pub struct Render {
     /// Renderer: cpu, or wgpu (cargo feature wgpu); overrides the configuration
     #[arg(long, value_name = "WHICH", value_parser = parse_renderer)]
     renderer: Option<RendererKind>,
-    /// Draw what MIMo observes with both eyes instead, left and right side by side: in his resolution, with the acuity of his age and
+    /// Draw MIMo's observation with both eyes instead, left and right side by side: at his resolution, with the acuity of his age and
     /// with foveation
     #[arg(long, conflicts_with_all = ["camera", "size"])]
     observed: bool,

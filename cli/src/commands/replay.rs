@@ -12,10 +12,10 @@ use super::{Source, parse_compat, read_recording};
 use crate::arguments::{count, number};
 use crate::print::say;
 
-/// Arguments of `replay`. Recordings that are single files come from the reference, so its behavior is the default for them.
+/// Arguments of `replay`. Recordings that are single files come from the reference, so its behavior is their default.
 #[derive(Args)]
 pub struct ReplayArgs {
-    /// Configuration file (YAML); that of a record is its own
+    /// Configuration file (YAML); a record has its own
     #[arg(long, value_name = "FILE")]
     config: Option<PathBuf>,
     /// Use the MJCF and textures of this directory (babybench/*.xml, tex/*.png) instead of the embedded ones
@@ -25,7 +25,7 @@ pub struct ReplayArgs {
     #[arg(long, value_name = "WHICH", value_parser = parse_compat)]
     compat: Option<Compat>,
     /// The folder of a record (--record of run and evaluate), which is repeated in its own configuration and compared bit by bit; or a
-    /// file with qpos0, qvel0, actions, and for --one-step qpos, qvel, qacc; of a task with reset_row, reset_qpos, reset_qvel instead of
+    /// file with qpos0, qvel0, actions, and for --one-step qpos, qvel, qacc; for a task with reset_row, reset_qpos, reset_qvel instead of
     /// a single start
     #[arg(long, value_name = "FILE|DIR")]
     recording: PathBuf,
@@ -44,7 +44,7 @@ pub struct ReplayArgs {
 }
 
 impl ReplayArgs {
-    /// Returns what the environment is built from, if it is given.
+    /// Returns the ingredients of the environment, if given.
     fn source(&self) -> Option<Source> {
         self.config.clone().map(|config| Source {
             config,

@@ -125,7 +125,7 @@ impl Run {
         say_peak_memory()
     }
 
-    /// Runs the episodes in many environments at once; that number i is seeded with the seed plus i.
+    /// Runs the episodes in many environments at once. Environment i is seeded with the seed plus i.
     fn many_envs(&self, blueprint: &Blueprint, n: usize, started: Instant) -> Result<(), Box<dyn Error>> {
         let mut envs = VectorEnv::new(blueprint, n, self.many.options(AutoresetMode::Disabled))?;
         let construction = started.elapsed();
@@ -209,7 +209,7 @@ fn description(env: &Env) -> String {
     )
 }
 
-/// Prints the peak memory, where the system tells.
+/// Prints the peak memory, if the system reports it.
 fn say_peak_memory() -> Result<(), Box<dyn Error>> {
     if let Some(kib) = peak_memory() {
         say!("peak memory of the process: {:.1} MiB", kib as f64 / 1024.0)?;
@@ -285,7 +285,7 @@ fn lock(clock: &Mutex<Clock>) -> MutexGuard<'_, Clock> {
     clock.lock().unwrap_or_else(|poisoned| poisoned.into_inner())
 }
 
-/// Returns the peak resident memory in KiB, where the system tells (Linux).
+/// Returns the peak resident memory in KiB, if the system reports it (Linux).
 fn peak_memory() -> Option<u64> {
     let status = std::fs::read_to_string("/proc/self/status").ok()?;
     let line = status.lines().find_map(|l| l.strip_prefix("VmHWM:"))?;

@@ -19,7 +19,7 @@ pub struct ScoreArgs {
     /// Folder of a training run: its save_dir, with logs/training.pkl
     #[arg(value_name = "SAVE_DIR")]
     save_dir: PathBuf,
-    /// Print the score after each of these numbers of steps, too, as in 10000,100000: of the episodes that had ended by then
+    /// Also print the score after each of these numbers of steps, as in 10000,100000, of the episodes that had ended by then
     #[arg(long, value_name = "STEPS", value_delimiter = ',', value_parser = count::<u64>, conflicts_with = "json")]
     at: Vec<u64>,
     /// Print the score as one line of JSON
@@ -38,7 +38,7 @@ impl ScoreArgs {
         }
         let mut score = eval_logs(&self.save_dir)?;
         let skin = match score.parts {
-            // names of parts are those of the run's scene; folders of the Python kit hold one that need not load here
+            // names of parts come from the run's scene, which need not load here if the folder is the Python kit's
             ScoreParts::SelfTouch { .. } => match read_scene(&self.save_dir) {
                 Ok(model) => {
                     let skin = Touchables::new(&model);
@@ -88,7 +88,7 @@ impl ScoreArgs {
     }
 }
 
-/// Returns the score without what no hand can reach in the scene of the run, and notes what that is.
+/// Returns the score without geoms that no hand can reach in the scene of the run, and prints a note about them.
 fn within_reach(score: Score, skin: &Touchables) -> Score {
     let parts = |score: &Score| match &score.parts {
         ScoreParts::SelfTouch { touched } => touched.each_ref().iter().map(|t| t.len()).sum(),

@@ -25,13 +25,13 @@ pub struct Senses {
     /// The angles of the file are in degrees
     #[arg(long)]
     degrees: bool,
-    /// Let the motors follow the angles, with everything else by the physics, instead of putting MIMo into each pose
+    /// Let the motors follow the angles, with everything else moved by the physics, instead of setting MIMo to each pose
     #[arg(long)]
     track: bool,
     /// Random seed of the reset; that of the configuration by default
     #[arg(long, allow_negative_numbers = true, value_parser = number::<u64>)]
     seed: Option<u64>,
-    /// Write the motion as a NumPy archive, in rad: a table becomes one
+    /// Write the motion as a NumPy archive, in rad
     #[arg(long, value_name = "FILE.npz")]
     save: Option<PathBuf>,
     #[command(flatten)]

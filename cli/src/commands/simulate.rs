@@ -23,7 +23,7 @@ use crate::interrupt::{Interrupt, Interrupted};
 /// Arguments of `simulate`.
 #[derive(Args)]
 pub struct Simulate {
-    /// MJCF document; what it includes and its textures are found beside it
+    /// MJCF document; paths of includes and textures start at its folder
     #[arg(value_name = "MODEL")]
     model: PathBuf,
     /// Simulated time, s
@@ -127,7 +127,7 @@ impl Simulate {
         Ok((Arc::new(model), assets))
     }
 
-    /// Prints what the model has, where it is, and how long that took.
+    /// Prints the contents of the model, its path, and the time of loading.
     fn report(
         &self,
         model: &Model,
@@ -196,7 +196,7 @@ fn shown(values: &[f64]) -> String {
     values.iter().map(|v| format!("{v:.6}")).collect::<Vec<_>>().join(" ")
 }
 
-/// Finds a keyframe by name, else by number.
+/// Finds a keyframe by name or by number.
 fn keyframe(model: &Model, key: &str) -> Result<usize, String> {
     let found = model
         .key(key)
@@ -213,7 +213,7 @@ fn keyframe(model: &Model, key: &str) -> Result<usize, String> {
     })
 }
 
-/// Copies what a step changes and a row of the archive holds, if there is an archive.
+/// Copies the part of the state that a row of the archive holds, if there is an archive.
 fn before(wanted: bool, state: &State) -> (f64, Vec<f64>, Vec<f64>, Vec<f64>) {
     if wanted {
         (state.time, state.qpos.clone(), state.qvel.clone(), state.act.clone())
@@ -245,7 +245,7 @@ impl Controls {
         })
     }
 
-    /// Sets the controls of the next step. A random one is within its range, or within 1 of 0 where it has none.
+    /// Sets the controls of the next step. A random control is within its range, or from -1 to 1 without a range.
     fn set(&mut self, model: &Model, state: &mut State) {
         state.ctrl.copy_from_slice(&self.held);
         if self.policy == Policy::Random {
@@ -306,7 +306,7 @@ impl Rows {
     }
 }
 
-/// Returns where a video is written until it is complete: a run that fails leaves what was there before.
+/// Returns the temporary path of a video, so that a failed run leaves an earlier video unchanged.
 fn unfinished(path: &Path) -> PathBuf {
     let mut name = path.as_os_str().to_owned();
     name.push(".part");

@@ -26,7 +26,7 @@ pub struct TestInstallation {
     save_dir: Option<String>,
 }
 
-/// Prints what is checked, then how it went; says what to do when it fails.
+/// Prints a check and its result, with advice if it fails.
 fn check<T>(
     what: &str,
     hint: &str,

@@ -35,8 +35,8 @@ pub struct Train {
     /// Random seed; that of the configuration by default
     #[arg(long, allow_negative_numbers = true, value_parser = number::<u64>)]
     seed: Option<u64>,
-    /// Policy instead of random actions, as evaluate takes it: babbling learns to touch itself while it acts, watching to look at its
-    /// hands. What these have learned is in no log, so that --resume refuses them
+    /// Policy instead of random actions, as for evaluate: babbling learns to touch itself while it acts, watching to look at its hands.
+    /// No log holds what these have learned, so --resume refuses them
     #[arg(long, conflicts_with_all = ["noise", "envs"])]
     policy: Option<String>,
     #[command(flatten)]
@@ -63,7 +63,7 @@ impl Train {
             let envs = RunVector::start(&blueprint, n, options, self.resume)?;
             return self.many_envs(envs, config, &interrupt);
         }
-        // before the log that is there is replaced: a policy that cannot be opened costs nothing
+        // before an existing log is replaced, so that a policy that cannot be opened costs nothing
         let mut policy = self.policy()?;
         let mut env = start_training(&blueprint, self.resume)?;
         let (seed, done, bar) = self.begin(env.log(), config)?;
@@ -104,14 +104,14 @@ impl Train {
         }
     }
 
-    /// Tells whether the policy learns while it acts.
+    /// Returns whether the policy learns while it acts.
     fn learns(&self) -> bool {
         self.policy
             .as_deref()
             .is_some_and(|name| PolicySource::new(name).learns())
     }
 
-    /// Refuses to go on with a policy that has forgotten what it had learned when the log ended.
+    /// Returns an error when a learning policy is to resume a log, because its memory is lost.
     fn refuse_forgetting(&self, config: &Config) -> Result<(), String> {
         let path = training_path(&config.save_dir);
         if !self.learns() || !path.exists() {
@@ -124,7 +124,7 @@ impl Train {
         ))
     }
 
-    /// Trains in many environments at once; that number i has the seed plus i.
+    /// Trains in many environments at once. Environment i has the seed plus i.
     fn many_envs(&self, mut envs: RunVector, config: &Config, interrupt: &Interrupt) -> Result<(), Box<dyn Error>> {
         say_threads(&envs);
         let (seed, done, bar) = self.begin(Some(envs.log()), config)?;
@@ -154,7 +154,7 @@ impl Train {
         self.print_result(Some(envs.log()), config, steps)
     }
 
-    /// Says what is resumed. Returns the seed of this run, the number of steps before it, and a progress bar.
+    /// Prints what is resumed. Returns the seed of this run, the number of earlier steps, and a progress bar.
     fn begin(&self, before: Option<&TrainingLog>, config: &Config) -> Result<(u64, u64, ProgressBar), Box<dyn Error>> {
         let before = before.map_or_else(TrainingTotals::default, |log| *log.totals());
         let (episodes, done) = (before.records as u64, before.steps);
@@ -164,12 +164,12 @@ impl Train {
         let bar = progress_bar(self.train_for, self.quiet)?;
         bar.set_position(done);
         bar.reset_eta();
-        // a resumed run must not repeat the actions of the run before
+        // a resumed run must not repeat the actions of the earlier run
         let seed = self.seed.unwrap_or(config.seed).wrapping_add(episodes);
         Ok((seed, done, bar))
     }
 
-    /// Prints what the log holds now, and its score.
+    /// Prints the contents of the log, and its score.
     fn print_result(&self, log: Option<&TrainingLog>, config: &Config, steps: u64) -> Result<(), Box<dyn Error>> {
         let Some(log) = log else { return Ok(()) };
         let (totals, dir) = (log.totals(), word(&config.save_dir));
@@ -210,7 +210,7 @@ impl Train {
     }
 }
 
-/// Refuses to replace the training log of another behavior, and warns before another is replaced.
+/// Returns an error if the training log is of another behavior, and warns before one is replaced.
 fn look_at_old_log(config: &Config) -> Result<(), Box<dyn Error>> {
     let path = training_path(&config.save_dir);
     if !path.exists() {

@@ -30,10 +30,10 @@ pub struct ViewArgs {
     /// Random seed; that of the configuration by default
     #[arg(long, allow_negative_numbers = true, value_parser = number::<u64>)]
     seed: Option<u64>,
-    /// Port of this machine where the page is; any that is free by default
+    /// Port of the page on this machine; any free port by default
     #[arg(long, value_name = "N", default_value_t = 0, allow_negative_numbers = true, value_parser = port)]
     port: u16,
-    /// Number of episodes; by default it goes on until it is interrupted
+    /// Number of episodes; by default it continues until it is interrupted
     #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = count::<u64>)]
     episodes: Option<u64>,
 }
@@ -93,7 +93,7 @@ impl ViewArgs {
     }
 }
 
-/// Takes a step and returns whether the episode is over with it.
+/// Takes a step and returns whether it ends the episode.
 fn step(
     env: &mut Env,
     view: &mut View,

@@ -1,7 +1,8 @@
 //! A viewer of environments that live: a page on this machine, and the environment behind it, which people turn, pull, stop and hurry.
 //!
-//! The page is small: pictures are drawn here, by the environment's own renderer, when a browser asks for one, and what people do
-//! comes with the question. Nobody asks: nothing is drawn. It listens on the loopback interface alone, at an address that cannot be guessed.
+//! The page is small. When a browser asks for a picture, it also sends the visitor's actions, and the environment's own renderer draws
+//! the picture here. Without requests nothing is drawn. The server listens on the loopback interface only, at an address that cannot be
+//! guessed.
 
 mod orbit;
 mod server;
@@ -16,11 +17,11 @@ use babybench::Env;
 use server::{Ask, Server};
 use stage::Stage;
 
-/// How long [`View::attend`] waits at most.
+/// The longest wait of [`View::attend`].
 const AT_MOST: Duration = Duration::from_millis(50);
 /// Longest delay that a late viewer catches up with: after a longer one it would race.
 const LATE: Duration = Duration::from_millis(100);
-/// How long after its last question a page still looks: hidden tabs do not ask.
+/// Time after its last request in which a page counts as open. Hidden tabs send no requests.
 const LOOKS: Duration = Duration::from_secs(2);
 /// Pictures do not follow each other faster while steps are due.
 const PICTURE: Duration = Duration::from_millis(16);
@@ -32,7 +33,7 @@ pub enum Next {
     Step,
     /// A new episode, and then [`View::restarted`].
     Reset,
-    /// Nothing: time stands, or it is not time yet.
+    /// Nothing: time is paused, or the next step is not due.
     Wait,
 }
 
@@ -42,17 +43,17 @@ pub enum Next {
 pub struct View {
     server: Server,
     stage: Stage,
-    /// When the next step is due.
+    /// The time at which the next step is due.
     due: Instant,
-    /// When the last picture was finished, and how long it took.
+    /// The time at which the last picture was finished, and its duration.
     drawn: (Instant, Duration),
     waiting: Option<Ask>,
-    /// When somebody last asked.
+    /// The time of the last request.
     asked: Option<Instant>,
 }
 
 impl View {
-    /// Opens a viewer at a port of this machine; 0 is any that is free. The title stands above the picture.
+    /// Opens a viewer at a port of this machine; 0 is any free port. The title is shown above the picture.
     ///
     /// # Errors
     /// The port is taken.
@@ -78,7 +79,7 @@ impl View {
         self.stage.moves
     }
 
-    /// Returns whether somebody looks. A program that only lets people look over its shoulder need not [`View::attend`] otherwise.
+    /// Returns whether a page is open. A program that only shows its work need not call [`View::attend`] otherwise.
     pub fn watched(&mut self) -> bool {
         if self.waiting.is_none() {
             self.waiting = self.server.ask(Duration::ZERO);
@@ -86,8 +87,8 @@ impl View {
         self.waiting.is_some() || self.asked.is_some_and(|asked| asked.elapsed() < LOOKS)
     }
 
-    /// Shows the environment to those who ask, does what they want, and says what is next, after a twentieth of a second at most (and the time
-    /// that a picture takes).
+    /// Answers requests for pictures, carries out the visitors' actions, and returns the next action of the program, after a twentieth of
+    /// a second at most (plus the time of a picture).
     pub fn attend(&mut self, env: &mut Env) -> Next {
         let until = Instant::now() + AT_MOST;
         loop {
@@ -115,7 +116,7 @@ impl View {
         }
     }
 
-    /// Says that a step of `seconds` simulated seconds has been taken.
+    /// Reports a step of `seconds` simulated seconds.
     pub fn stepped(&mut self, env: &mut Env, seconds: f64) {
         let now = Instant::now();
         let lasts = Duration::from_secs_f64((seconds / self.stage.speed).clamp(0.0, 3600.0));
@@ -123,7 +124,7 @@ impl View {
         self.stage.spring.pull(env, seconds);
     }
 
-    /// Says that an episode has begun.
+    /// Reports the start of an episode.
     pub fn restarted(&mut self, env: &mut Env) {
         self.stage.spring.let_go(env);
         self.due = Instant::now();
@@ -134,7 +135,7 @@ impl View {
         let was = self.stage.paused;
         let answer = self.stage.answer(env, &ask.words);
         if was && !self.stage.paused || self.stage.single {
-            // the time that stood is over
+            // the pause is over
             self.due = Instant::now();
         }
         self.drawn = (Instant::now(), started.elapsed());

@@ -4,12 +4,12 @@ use babybench::Env;
 use babybench::math::{Mat3, Vec3, add_scaled, column, dot, sub};
 use babybench::render::{FreeCamera, RenderError};
 
-/// A camera that looks at a point; places in its picture are parts of the picture's width and height, from the upper left corner.
+/// A camera that looks at a point. Positions in its picture are fractions of the picture's width and height, from the upper left corner.
 pub struct Orbit {
     camera: FreeCamera,
 }
 
-/// Where the camera stands while one picture is drawn.
+/// The pose of the camera in one picture.
 pub struct Lens {
     eye: Vec3,
     right: Vec3,
@@ -21,7 +21,7 @@ pub struct Lens {
 }
 
 impl Orbit {
-    /// Returns a camera that looks at MIMo, or at the middle of a scene without him.
+    /// Returns a camera that looks at MIMo, or at the centre of a scene without him.
     pub fn new(env: &Env) -> Self {
         let hip = env.model().body("hip").and_then(|body| env.state().xpos.get(body));
         Self {
@@ -59,7 +59,7 @@ impl Orbit {
         self.camera.distance = (self.camera.distance * factor).clamp(0.1, 30.0);
     }
 
-    /// Returns where the camera stands, for a vertical field of view (degrees) and the width of the picture over its height.
+    /// Returns the pose of the camera, for a vertical field of view (degrees) and an aspect ratio, width over height.
     pub fn lens(&self, fovy: f64, aspect: f64) -> Result<Lens, RenderError> {
         let (eye, mat): (Vec3, Mat3) = self.camera.pose()?;
         let high = 2.0 * (fovy.to_radians() / 2.0).tan();

@@ -16,7 +16,7 @@ const BODY: usize = 16 << 10;
 const REST: u64 = 1 << 20;
 /// Connections at once: a browser opens six.
 const CONNECTIONS: usize = 24;
-/// How long a browser may take for a request, and how long a question may wait for the program.
+/// Time limits of a browser's request, and of a request's wait for the program.
 const PATIENCE: Duration = Duration::from_secs(20);
 const BUSY: Duration = Duration::from_secs(2);
 
@@ -26,7 +26,7 @@ const SCRIPT: &str = include_str!("page.js");
 /// The answer to a question: what was drawn, or what is wrong with it.
 pub type Answer = Result<Vec<u8>, String>;
 
-/// A question of a page: what people did there, line by line; they want to see what comes of it.
+/// A request of a page: the visitor's actions, line by line. The answer is the resulting picture.
 pub struct Ask {
     pub words: String,
     pub reply: SyncSender<Answer>,
@@ -43,7 +43,7 @@ pub struct Server {
 
 /// State shared by all connections.
 struct Shared {
-    /// The path of the page: nobody who has not seen it knows it.
+    /// The path of the page, which cannot be guessed.
     path: String,
     asks: SyncSender<Ask>,
     open: AtomicUsize,
@@ -125,7 +125,7 @@ fn accept(listener: &TcpListener, shared: &Arc<Shared>, closed: &AtomicBool) {
         let started = thread::Builder::new()
             .name("view connection".to_owned())
             .spawn(move || {
-                // a browser that goes away is none of our business
+                // a browser that disconnects is not an error
                 let _ = serve(stream, &mine);
                 mine.open.fetch_sub(1, Ordering::Relaxed);
             });
@@ -170,7 +170,7 @@ fn serve(mut stream: TcpStream, shared: &Shared) -> io::Result<()> {
     }
 }
 
-/// Reads a request, of which `bytes` may have the start; what follows it stays there. `None` when the browser has hung up.
+/// Reads a request, whose start may be in `bytes`. What follows it stays there. `None` if the browser has disconnected.
 fn read(stream: &mut impl Read, bytes: &mut Vec<u8>) -> io::Result<Option<Result<Request, Refusal>>> {
     let mut more = [0; 4096];
     loop {
@@ -226,8 +226,8 @@ fn parse(bytes: &[u8]) -> Result<Option<(Request, usize)>, Refusal> {
     Ok(Some((request, head + length)))
 }
 
-/// Returns whether the request comes from a page of this server: others in the same browser may not even ask. A name of this machine
-/// that only looks like it (DNS rebinding) is another host; ports may differ where a tunnel leads here.
+/// Returns whether the request comes from a page of this server. Other pages in the same browser may not send any. A host name that only
+/// resolves to this machine (DNS rebinding) is another host. Ports may differ, because a tunnel may lead here.
 fn is_ours(request: &Request) -> bool {
     let name = request.host.rsplit_once(':').map_or(&*request.host, |(name, _)| name);
     let origin = request.origin.as_deref().map(|origin| origin.strip_prefix("http://"));

@@ -3,7 +3,7 @@
 use babybench::Env;
 use babybench::math::{Vec3, add, mat_t_vec, mat_vec, norm, scale, sub};
 
-/// How fast the pulled body would swing, rad/s: stiffness is its square times the mass that the point feels.
+/// The angular frequency of the pulled body, rad/s: stiffness is its square times the mass that the point feels.
 const STRENGTH: f64 = 12.0;
 /// The greatest force, in weights of what the point feels: a pointer far away must not throw the infant out of the room.
 const MOST: f64 = 40.0;
@@ -16,10 +16,10 @@ pub struct Spring {
 
 struct Held {
     body: usize,
-    /// Where it is held, in the frame of the body, m.
+    /// The pulled point, in the frame of the body, m.
     point: Vec3,
     target: Vec3,
-    /// Where the point was before the last step, world, m.
+    /// The point's position before the last step, world, m.
     before: Option<Vec3>,
 }
 

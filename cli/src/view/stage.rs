@@ -17,19 +17,19 @@ const SIDE: std::ops::RangeInclusive<usize> = 16..=1600;
 const QUALITY: u8 = 88;
 /// Points of touch that a picture has at most.
 const POINTS: usize = 4000;
-/// How far behind the surface that is seen a point may be and still be drawn, m.
+/// Depth behind the visible surface up to which a point is drawn, m.
 const BEHIND: f64 = 0.012;
 
 /// Everything that people have set, and what draws for them.
 pub struct Stage {
     title: String,
-    /// Whether time stands, and whether it stands still after one more step.
+    /// Whether time is paused, and whether it pauses after one more step.
     pub paused: bool,
     pub single: bool,
     /// Simulated seconds in one.
     pub speed: f64,
     pub moves: bool,
-    /// Whether somebody wants a new episode.
+    /// Whether a new episode was requested.
     pub reset: bool,
     pub spring: Spring,
     touch: bool,
@@ -67,7 +67,7 @@ impl Stage {
         }
     }
 
-    /// Does what the lines say, and draws what comes of it: a line of JSON and a JPEG.
+    /// Carries out the lines, and draws the result: a line of JSON and a JPEG.
     pub fn answer(&mut self, env: &mut Env, lines: &str) -> Answer {
         for line in lines.lines() {
             self.obey(env, line)?;
@@ -75,7 +75,7 @@ impl Stage {
         self.picture(env).map_err(|e| e.to_string())
     }
 
-    /// Does what a line says: a word and what it is about.
+    /// Carries out a line: a word and its arguments.
     fn obey(&mut self, env: &mut Env, line: &str) -> Result<(), String> {
         let (word, rest) = line.split_once(' ').unwrap_or((line, ""));
         if word == "camera" {

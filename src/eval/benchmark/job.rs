@@ -40,7 +40,7 @@ pub struct Job {
 pub struct RunResult {
     /// Its name.
     pub name: String,
-    /// CRC-32 of all that decides what comes of it, the version of babybench included.
+    /// CRC-32 of everything that decides the result, including the version of babybench.
     pub identity: u32,
     /// The file of the configuration, without its ending.
     pub config: String,
@@ -54,7 +54,7 @@ pub struct RunResult {
     pub seed: u64,
     /// Number of steps.
     pub steps: u64,
-    /// Number of episodes, the last of which may be cut off.
+    /// Number of episodes. The last one may be truncated.
     pub episodes: u64,
     /// The score of all episodes; none for tasks.
     pub score: Option<f64>,
@@ -66,7 +66,7 @@ pub struct RunResult {
     pub mean_return: Option<f64>,
     /// Share of the episodes of a task that end in success.
     pub successes: Option<f64>,
-    /// The score of the evaluation that follows, in which policies that learn do what they have learned.
+    /// The score of the evaluation that follows, in which learning policies do what they have learned.
     #[serde(default)]
     pub evaluated_score: Option<f64>,
     /// Parts that both hands touch in an episode of the evaluation, mean.
@@ -74,7 +74,7 @@ pub struct RunResult {
     pub evaluated_parts: Option<f64>,
     /// The measures of the recorded episodes.
     pub measures: Option<Measures>,
-    /// Steps per second of this run, one thread, with whatever else the machine did.
+    /// Steps per second of this run, in one thread, beside the machine's other work.
     pub steps_per_second: f64,
 }
 
@@ -87,7 +87,7 @@ impl Job {
                 .collect()
         };
         let age = config.age.map_or_else(String::new, |age| format!("-age{age}"));
-        // policies that look alike in a name are told apart
+        // policies whose names look alike are distinguished
         let name = format!(
             "{}{age}-{}-{:08x}-seed{seed}",
             plain(stem),
@@ -106,7 +106,7 @@ impl Job {
         }
     }
 
-    /// Returns a number that tells whether a result is of this run.
+    /// Returns a number that identifies the results of this run.
     fn identity(&self) -> u32 {
         let about = format!(
             "{}\n{}\n{}\n{}\n{}\n{}",

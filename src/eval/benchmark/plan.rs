@@ -47,7 +47,7 @@ pub struct BenchmarkPlan {
     pub steps: u64,
     /// Number of episodes of each run that are recorded and measured, the first ones.
     pub record: u64,
-    /// Number of episodes of each run after these steps, in which policies that learn do what they have learned
+    /// Number of episodes of each run after these steps, in which learning policies do what they have learned
     /// ([`Policy::settle`](crate::policy::Policy::settle)).
     #[serde(default)]
     pub evaluate: u64,

@@ -7,8 +7,8 @@ use crate::spaces::NumpyRng;
 /// Number of samples that are drawn with replacement.
 const SAMPLES: usize = 10_000;
 
-/// A mean over runs, with the interval of 95 % of means of samples that are drawn from them with replacement
-/// (B. Efron, "Bootstrap methods: another look at the jackknife", 1979; percentiles).
+/// A mean over runs, with the interval that holds 95 % of the means of samples drawn from them with replacement (B. Efron, "Bootstrap
+/// methods: another look at the jackknife", 1979; percentiles).
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Interval {
     /// The mean.

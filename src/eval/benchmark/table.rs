@@ -93,7 +93,7 @@ impl Metric {
     }
 }
 
-/// Puts the runs together that differ in their seeds alone.
+/// Groups the runs that differ only in their seeds.
 pub(super) fn rows(runs: &[RunResult]) -> Vec<Row> {
     let same = |a: &RunResult, b: &RunResult| (&a.config, a.age, &a.policy) == (&b.config, b.age, &b.policy);
     runs.chunk_by(|a, b| same(a, b))

@@ -44,12 +44,12 @@ pub enum Panel<'a> {
     Picture(&'a [u8]),
 }
 
-/// Where a picture is taken from.
+/// The viewpoint of a picture.
 #[derive(Clone, Copy, Debug)]
 enum Spot {
     /// A camera of the scene.
     Camera(usize),
-    /// Before MIMo's hip, where the room has no camera: offset (m) and orientation.
+    /// In front of MIMo's hip, for rooms without the camera: offset (m) and orientation.
     Free(Vec3, Mat3),
 }
 
@@ -68,7 +68,7 @@ pub struct FrameComposer {
 }
 
 impl FrameComposer {
-    /// Creates a composer for the scene of `model`. Where it has no cameras `corner`, `top`, `side2`, as scenes of tasks have none, others
+    /// Creates a composer for the scene of `model`. If it has no cameras `corner`, `top` and `side2`, like scenes of tasks, other cameras
     /// follow MIMo.
     ///
     /// # Errors
@@ -187,7 +187,7 @@ fn view(camera: usize) -> View {
     }
 }
 
-/// Puts a panel on the right, from row `top`.
+/// Writes a panel on the right, from row `top`.
 fn place(panel: &[u8], out: &mut [u8], top: usize) {
     let lines = out.chunks_exact_mut(3 * FRAME_WIDTH).skip(top);
     for (line, row) in lines.zip(panel.chunks_exact(3 * PANEL)) {

@@ -17,7 +17,7 @@ pub type FilmError = Box<dyn Error + Send + Sync>;
 
 /// A recorder of the videos of evaluation episodes.
 pub trait Film {
-    /// Adds a frame of the environment's current step; the first one begins a video.
+    /// Adds a frame of the environment's current step. The first one starts a video.
     ///
     /// # Errors
     /// Errors of drawing, encoding or the file system.

@@ -36,8 +36,8 @@ impl std::fmt::Debug for RoomFilm {
 }
 
 impl RoomFilm {
-    /// Creates a film for environments of the scene of `env`. An unfinished video lies in `folder`, which must be on
-    /// the file system that the videos end up on; it is made if it is not there.
+    /// Creates a film for environments of the scene of `env`. `folder` holds the unfinished video. It must be on the file system of the
+    /// finished videos, and is created if necessary.
     ///
     /// # Errors
     /// Textures that cannot be read, a scene without the cameras, a folder that cannot be made.

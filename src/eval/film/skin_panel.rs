@@ -7,11 +7,11 @@ use crate::math::*;
 
 /// Side of the panel, pixels.
 const SIDE: usize = 240;
-/// Where the hip is in the panel: column, row. Measured on the reference's panel, as the two numbers that follow.
+/// Position of the hip in the panel: column, row. Measured on the reference's panel, like the next two numbers.
 const HIP: [f64; 2] = [118.74, 136.76];
 /// Pixels per metre at the height of the hip.
 const SCALE: f64 = 198.2;
-/// How much larger things are per metre above the hip.
+/// Growth of the scale per metre above the hip.
 const PERSPECTIVE: f64 = 0.0593;
 /// A force that is felt, N.
 const FELT: f64 = 1e-7;

@@ -24,7 +24,7 @@ pub(super) fn smoothness(velocities: &[Vec<f64>], dt: f64) -> Option<f64> {
     mean(velocities.iter().filter_map(of))
 }
 
-/// Returns the correlation of the velocities of right and left joints, mean over the pairs of which both move.
+/// Returns the correlation of the velocities of right and left joints, as the mean over the pairs in which both move.
 pub(super) fn symmetry<'v>(pairs: impl Iterator<Item = (&'v [f64], &'v [f64])>) -> Option<f64> {
     mean(pairs.filter_map(|(right, left)| {
         let product = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();

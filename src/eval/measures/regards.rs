@@ -1,4 +1,4 @@
-//! How long the hands are in view.
+//! Times in which the hands are in view.
 
 use crate::env::PerEyeAndHand;
 use crate::formats::npz::{Npz, NpzError};
@@ -17,7 +17,7 @@ pub(super) fn counted(npz: &Npz) -> Result<Option<PerEyeAndHand<f64>>, NpzError>
     let (Some(first), Some(last)) = (rows.first(), rows.last()) else {
         return Ok(None);
     };
-    // counters may go on from the episode before; in one step they grow by one at most
+    // counters may continue from the last episode; in one step they grow by at most one
     let old = first.map(|count| if count > 1 { count - 1 } else { 0 });
     let share = |k: usize| last[k].saturating_sub(old[k]) as f64 / rows.len() as f64;
     Ok(Some(std::array::from_fn::<f64, 4, _>(share).into()))
@@ -62,7 +62,7 @@ pub(super) fn seen(npz: &Npz, manifest: &Manifest) -> Result<Option<PerEyeAndHan
     Ok(Some(shares.into()))
 }
 
-/// Tells which pixels of an image are within the central field of view.
+/// Returns which pixels of an image are within the central field of view.
 fn central(height: usize, width: usize, fovy: f64) -> Vec<bool> {
     let focal = 0.5 * height as f64 / pxfm::f_tan(0.5 * fovy.to_radians());
     let limit = focal * pxfm::f_tan(FIELD_OF_VIEW.to_radians());

@@ -1,11 +1,11 @@
-//! Which touches there are in a record.
+//! The touches in a record.
 
 use std::collections::BTreeMap;
 
 use crate::formats::npz::{Npz, NpzError};
 use crate::runs::{GeomDescription, Manifest};
 
-/// A touch goes on through gaps of less than this, s.
+/// A touch continues across gaps of less than this, s.
 const GAP: f64 = 0.1;
 
 /// The touches of a step.
@@ -106,7 +106,7 @@ impl Steps {
         self.steps.len()
     }
 
-    /// Returns the share of the steps of which something holds.
+    /// Returns the share of the steps that satisfy a condition.
     pub fn share(&self, holds: impl Fn(&Step) -> bool) -> f64 {
         super::ratio(
             self.steps.iter().filter(|step| holds(step)).count() as f64,

@@ -55,7 +55,7 @@ impl Check {
     }
 }
 
-/// Writes how much there is of everything, and of that MIMo's.
+/// Writes the number of elements of each kind, and how many are MIMo's.
 fn write_sizes(out: &mut impl Write, env: &Env) -> io::Result<()> {
     let (config, model) = (env.config(), env.model());
     let mimo = MimoBodies::of(model);
@@ -124,7 +124,7 @@ fn write_reach(out: &mut impl Write, env: &Env) -> io::Result<()> {
     Ok(())
 }
 
-/// Writes what is in each other at the start, before it settles; MIMo's own parts always are, a little.
+/// Writes what overlaps at the start, before the scene settles. MIMo's own parts always overlap slightly.
 fn write_contacts(out: &mut impl Write, env: &Env) -> io::Result<()> {
     let model = env.model();
     let mimo = MimoBodies::of(model);
@@ -158,7 +158,7 @@ fn write_contacts(out: &mut impl Write, env: &Env) -> io::Result<()> {
     Ok(())
 }
 
-/// Names a geom by its body, and by itself if it has a name.
+/// Names a geom by its body, and by its own name if it has one.
 fn named(model: &Model, geom: usize) -> String {
     let body = &model.body_name[model.geom_bodyid[geom]];
     match model.geom_name[geom].as_str() {

@@ -18,7 +18,7 @@ pub struct Scene {
 enum Command {
     /// Write a room with MIMo and toys (room.xml) and its configuration (room.yml), both with comments
     New(new::New),
-    /// Print what a scene has, what MIMo may touch, what touches at the start, and what is ignored
+    /// Print the contents of a scene, what MIMo may touch, what overlaps at the start, and what is ignored
     Check(check::Check),
 }
 

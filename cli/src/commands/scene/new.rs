@@ -19,7 +19,7 @@ const FILES: [(&str, &str); 2] = [
 /// Arguments of `scene new`.
 #[derive(Args)]
 pub struct New {
-    /// Folder to write to, which is made if it is not there
+    /// Folder to write to, which is created if necessary
     #[arg(value_name = "DIR")]
     dir: PathBuf,
 }
@@ -27,7 +27,7 @@ pub struct New {
 impl New {
     pub fn run(&self) -> Result<(), Box<dyn Error>> {
         let paths = FILES.map(|(name, _)| self.dir.join(name));
-        // before the first is written
+        // before the first file is written
         if let Some(path) = paths.iter().find(|path| path.symlink_metadata().is_ok()) {
             return Err(format!("{}: this file exists; choose another folder", path.display()).into());
         }
