@@ -21,7 +21,7 @@ pub enum ActuationError {
     Parameter {
         /// Its name.
         actuator: String,
-        /// Which number.
+        /// The index of the number.
         what: &'static str,
         /// Its value; NaN when it is missing.
         value: f64,

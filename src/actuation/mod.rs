@@ -8,9 +8,9 @@
 //!
 //! Actions drive the actuators on MIMo's joints; those of other bodies in a scene are left at the control 0, unless `act_others`.
 //!
-//! Models work without an environment: [`Actuation::prepare`] a state once, then [`Actuation::set_action`] before the
-//! first physics step of an action and [`Actuation::substep`] before each further one. A model remembers nothing:
-//! activations, targets and forces are in the [`State`].
+//! Models work without an environment: [`Actuation::prepare`] a state once, then call [`Actuation::set_action`] before the first physics
+//! step of an action and [`Actuation::substep`] before each further one. A model has no memory: activations, targets and forces are in
+//! the [`State`].
 
 pub mod curves;
 mod error;
@@ -34,8 +34,8 @@ pub trait Actuation: Send + Sync {
     /// Returns the bounds of an action.
     fn action_space(&self) -> &BoxSpace;
 
-    /// Returns the actuators that an action drives, by id: those on MIMo's joints. An action has a number for each, or a block of
-    /// such numbers after another. The control of other actuators stays 0, but for [`Actuation::others`].
+    /// Returns the actuators that an action drives, by id: those on MIMo's joints. An action has a number for each, or several blocks of
+    /// such numbers. The controls of other actuators stay 0, except for [`Actuation::others`].
     fn actuators(&self) -> &[usize];
 
     /// Returns the actuators of other bodies that an action drives, by id: each by one of the last numbers. None unless `act_others`.
@@ -46,8 +46,8 @@ pub trait Actuation: Send + Sync {
     /// Returns the names of the components of an action: actuator and quantity.
     fn action_names(&self, model: &Model) -> Vec<String>;
 
-    /// Sets the parameters of a state as the actuation needs them, and makes room for its own values there. Called
-    /// once, on a new state; the actuators are then at rest.
+    /// Sets the parameters of a state as the actuation needs them, and reserves its own values there. Called once, on a new state. The
+    /// actuators are then at rest.
     fn prepare(&self, model: &Model, state: &mut State);
 
     /// Takes an action, clipped to the space, for the next environment step. `action` has the length of the space.
@@ -82,7 +82,7 @@ pub fn build(model: &Model, config: &Config) -> Result<Box<dyn Actuation>, Actua
         ActuationModel::Muscle => Box::new(Muscle::new(model, config.compat)?),
         ActuationModel::Positional => Box::new(Positional::new(model, config.compat)?),
     };
-    // without others it is the model itself, whatever is asked for: MIMo's own way stays as it is
+    // without others it is the model itself, so MIMo's own path does not change
     let others = config.act_others && mimo.actuators().len() < model.nu();
     Ok(if others {
         Box::new(others::WithOthers::new(mimo, model))

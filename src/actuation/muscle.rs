@@ -16,8 +16,7 @@ const TAU: f64 = 0.01;
 /// Factor by which the damping of MIMo's joints is divided.
 const DAMPING_DIVISOR: f64 = 20.0;
 
-/// Returns the activation after a time step of `h` seconds in which the muscle was told to reach `target`:
-/// `a' = (target - a) / 10 ms`, one Euler step, kept in [0, 1].
+/// Returns the activation after a time step of `h` seconds towards `target`: `a' = (target - a) / 10 ms`, one Euler step, kept in [0, 1].
 #[inline]
 fn activate(act: f64, target: f64, h: f64) -> f64 {
     (act + h * (target - act) / TAU).clamp(0.0, 1.0)
@@ -83,7 +82,7 @@ impl Muscle {
         &self.params
     }
 
-    /// Reserves room for the muscles in a state that was not prepared.
+    /// Reserves the muscles' values in a state that was not prepared.
     fn make_room(&self, state: &mut State) {
         let n = self.params.len();
         for values in [&mut state.act, &mut state.actuator_target, &mut state.muscle_force] {

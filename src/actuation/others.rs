@@ -26,7 +26,7 @@ impl WithOthers {
         let others: Vec<usize> = (0..model.nu()).filter(|i| !mimo.actuators().contains(i)).collect();
         let bounds = |&i: &usize| {
             let range = model.actuator_ctrlrange[i];
-            // a bound that is infinite limits nothing, and nobody could draw an action from it
+            // an infinite bound is no limit and cannot be sampled
             if model.actuator_ctrllimited[i] && range.iter().all(|v| v.is_finite()) {
                 range
             } else {

@@ -10,8 +10,8 @@ use crate::spaces::BoxSpace;
 /// Drives joints by position servos: one of 1 N m/rad on each joint pulls it to the action, an angle in rad within the
 /// joint's range.
 ///
-/// The target of a joint that an active joint equality holds (the scene's or a lock) is 0, whatever the action. The
-/// observation is the clipped action itself, for those joints too.
+/// The target of a joint that an active joint equality holds (the scene's or a lock) is 0, whatever the action. The observation is the
+/// clipped action itself, also for those joints.
 ///
 /// With a `frame_skip` above 1 the target holds for all substeps; under `compat: reference` every substep but the first
 /// has the target and the observed action 0. The metabolic cost is 0.

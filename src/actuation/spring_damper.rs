@@ -35,8 +35,8 @@ impl SpringDamper {
         }
     }
 
-    /// Returns the control before the gear: after the limits of the motor, or under `compat: reference` as it stands,
-    /// where single precision exceeds the limits in the last digits.
+    /// Returns the control before the gear: after the limits of the motor, or under `compat: reference` unlimited, where single precision
+    /// exceeds the limits in the last digits.
     fn effective(&self, model: &Model, state: &State, i: usize) -> f64 {
         let u = state.ctrl[i];
         if self.compat == Compat::Api && state.params.actuator_forcelimited[i] {

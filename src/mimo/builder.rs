@@ -67,7 +67,7 @@ impl SceneBuilder {
         &self.extra
     }
 
-    /// Puts the scene into a configuration.
+    /// Returns a configuration with the scene.
     pub fn config(&self, config: Config) -> Config {
         Config {
             scene: self.scene.clone(),

@@ -71,12 +71,12 @@ pub enum LockError {
     /// The angle is not finite.
     #[error("cannot lock at the angle {angle}: it must be finite, in radians")]
     Angle {
-        /// Angle asked for, rad.
+        /// The requested angle, rad.
         angle: f64,
     },
 }
 
-/// Returns the equality constraint that locks a joint: the one that carries its name and constrains nothing else.
+/// Returns the equality constraint that locks a joint: the one with its name that constrains nothing else.
 pub fn lock_of(model: &Model, joint: usize) -> Option<usize> {
     let name = model.jnt_name.get(joint)?;
     let lock = model.equality(name)?;
@@ -107,7 +107,7 @@ pub fn lock(model: &Model, params: &mut Params, target: LockTarget, angle: f64) 
     let mut report = LockReport::default();
     // all joints are looked up before the first one changes
     for (joint, lock) in locks(model, target)? {
-        // two constraints that want different angles would pull against each other for ever
+        // two constraints with different angles would pull against each other forever
         if let Some(other) = held_by(model, params, joint) {
             report.held.push((joint, other));
             continue;

@@ -10,9 +10,9 @@ pub(crate) const JOINT_PREFIX: &str = "robot:";
 /// The body on which all others of MIMo hang.
 pub(crate) const ROOT: &str = "hip";
 
-/// Tells MIMo's bodies from others in a scene: his hip and all that hangs on it, whatever others are called.
+/// MIMo's bodies in a scene: his hip and everything below it, whatever other bodies are called.
 ///
-/// In a model without a hip, nothing but names can tell, and every body may be his.
+/// In a model without a hip only names can tell, and every body may be his.
 ///
 /// ```
 /// use babybench::mimo::{MimoBodies, build_model, embedded};

@@ -12,7 +12,7 @@ use crate::physics::{Engine, EngineError, SoftEngine, SoftOptions, State};
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Overlap {
     pub geoms: [usize; 2],
-    /// How deep, m.
+    /// Depth, m.
     pub depth: f64,
 }
 

@@ -46,7 +46,7 @@ pub enum Version {
 }
 
 impl Version {
-    /// Returns the version for a behavior: hand regard has fingers to look at, catching needs them, everything else is faster without.
+    /// Returns the version for a behavior: hand regard and catching need fingers, everything else is faster without them.
     pub fn of(behavior: Behavior) -> Self {
         match behavior {
             Behavior::HandRegard | Behavior::Catch | Behavior::Play => Self::V2,
@@ -81,8 +81,8 @@ const ACTUATOR_GROUPS: [Part; 8] = [
     Part::Feet,
 ];
 
-/// Writes the top document of an environment: that of its task, or that of BabyBench's scenes, or one that includes a scene of one's
-/// own, which [`scene_assets`](crate::mimo::scene_assets) has.
+/// Returns the top document of an environment: that of its task, that of BabyBench's scenes, or one that includes a custom scene, which
+/// [`scene_assets`](crate::mimo::scene_assets) has.
 pub fn scene_xml(config: &Config) -> String {
     let name = match config.age {
         None => "MIMo".to_string(),
@@ -179,8 +179,8 @@ pub enum SceneError {
 
 /// Loads and compiles the scene of a configuration from `assets`, with MIMo at his age.
 ///
-/// A MIMo of another size than the original's is moved up or down until his lowest point is where the original's is, both in
-/// the posture in which the scene holds them. A custom scene is one of the assets, or else a file of the system; see
+/// A MIMo of another size than the original is moved up or down until his lowest point is where the original's is, both in the posture in
+/// which the scene holds them. A custom scene is one of the assets, or otherwise a file of the system; see
 /// [`scene_assets`](crate::mimo::scene_assets).
 ///
 /// # Errors
@@ -334,10 +334,10 @@ fn grow_other(draft: &mut Draft, growth: Option<&Growth>) -> Result<(), SceneErr
     Ok(grown?)
 }
 
-/// How much deeper than at the same age without measurements two parts may be in each other, m.
+/// Tolerance of the overlap of two parts over that at the same age without measurements, m.
 const OVERLAP: f64 = 0.003;
 
-/// Says which two parts of MIMo are deeper in each other than usual, if any are.
+/// Returns two parts of MIMo that overlap more than usual, if any.
 fn deeper(model: &Model, found: &[Overlap], usual: &[Overlap]) -> Option<String> {
     let name = |geom: usize| &model.body_name[model.geom_bodyid[geom]];
     found.iter().find_map(|o| {

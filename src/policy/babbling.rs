@@ -1,10 +1,10 @@
 //! Goal babbling: an infant that learns to touch itself by trying movements, remembering what each of them let it feel, and doing
 //! again what leads to rare touches.
 //!
-//! The idea is that of M. Rolf, J. J. Steil and M. Gienger, "Goal babbling permits direct learning of inverse kinematics" (2010), and
-//! of A. Baranes and P.-Y. Oudeyer, "Active learning of inverse models with intrinsically motivated goal exploration in robots"
-//! (2013): goals are chosen in what can be sensed, and the movements that reached near ones are varied. There is no network and no
-//! gradient: memory is a list, and what a movement will lead to is foreseen from its nearest experiences.
+//! The idea is that of M. Rolf, J. J. Steil and M. Gienger, "Goal babbling permits direct learning of inverse kinematics" (2010), and of
+//! A. Baranes and P.-Y. Oudeyer, "Active learning of inverse models with intrinsically motivated goal exploration in robots" (2013):
+//! goals are chosen among possible sensations, and the movements that came near them are varied. There is no network and no gradient. The
+//! memory is a list, and the outcome of a movement is predicted from its nearest experiences.
 
 mod arms;
 mod memory;
@@ -17,7 +17,7 @@ use crate::env::Env;
 use crate::sensors::Component;
 use crate::spaces::NumpyRng;
 
-/// How long a new movement lasts, s: one of these by chance. A reach of MIMo's takes 0.1 to 0.4 s at his strength.
+/// Durations of a new movement, s, one of which is drawn. A reach of MIMo's takes 0.1 to 0.4 s at his strength.
 const DURATIONS: [f64; 3] = [0.1, 0.2, 0.4];
 /// Shares of the decisions that do again what promises most, vary it, and put arms of two movements together; the rest is random.
 const AGAIN: f64 = 0.4;
@@ -69,7 +69,7 @@ impl Babbling {
         Self::default()
     }
 
-    /// Returns the number of movements that it remembers.
+    /// Returns the number of movements in its memory.
     pub fn movements(&self) -> usize {
         self.learner.as_ref().map_or(0, |learner| learner.memory.len())
     }
@@ -93,7 +93,7 @@ struct Learner {
 #[derive(Clone, Debug)]
 struct Running {
     movement: Movement,
-    /// Which movement of the memory is done again; none if it is a new one.
+    /// The movement of the memory that is repeated; `None` for a new one.
     again: Option<usize>,
     posture: Vec<f32>,
     felt: Vec<u32>,
@@ -150,7 +150,7 @@ impl Learner {
         })
     }
 
-    /// Learns how often touches happen, and forgets the movement that the end of the episode has cut off.
+    /// Updates the frequencies of touches, and drops the movement that the end of the episode interrupted.
     fn end_episode(&mut self) {
         for (share, touched) in self.shares.iter_mut().zip(&mut self.touched) {
             *share += FORGETTING * (f64::from(u8::from(*touched)) - *share);
@@ -194,7 +194,7 @@ impl Learner {
         }
     }
 
-    /// Begins a movement.
+    /// Starts a movement.
     fn decide(&mut self, env: &Env, settled: bool) {
         let posture = posture(env);
         let chance = if settled { 0.0 } else { self.rng.uniform() };
@@ -204,7 +204,7 @@ impl Learner {
             Choice::default()
         };
         if settled && choice.both.is_none() {
-            // all that it knows was touched: begin again
+            // everything known was touched: start again
             self.touched.fill(false);
             choice = self.best(&posture, settled);
         }
@@ -235,7 +235,7 @@ impl Learner {
             // a touch that no episode has had counts 25 times as much as one that all have
             () => pxfm::f_pow(share + 0.01, -0.7),
         });
-        // once for all experiences, of which a million steps leave ten thousands
+        // once for all experiences; a million steps leave tens of thousands
         let worth: Vec<f64> = worth.collect();
         self.memory
             .best(posture, |pair| (self.arms.hand_of(pair), worth[pair as usize]))

@@ -125,7 +125,7 @@ impl CommandPolicy {
             source,
         };
         program.stdin(Stdio::piped()).stdout(Stdio::piped());
-        // a group of its own, so that a program that does not end takes what it started with it
+        // a group of its own, so that a program that does not end is killed with everything it started
         #[cfg(unix)]
         std::os::unix::process::CommandExt::process_group(&mut program, 0);
         let mut child = program.spawn().map_err(failed)?;
@@ -228,7 +228,7 @@ fn read_lines(output: impl Read, longest: usize, lines: &SyncSender<std::io::Res
     let mut output = BufReader::new(output);
     loop {
         let mut line = Vec::new();
-        // one byte more than allowed tells a line that is too long from one that just fits
+        // one byte more than allowed distinguishes a line that is too long from one that just fits
         let most = (longest as u64).saturating_add(1);
         let read = (&mut output).take(most).read_until(b'\n', &mut line);
         let last = matches!(read, Ok(0) | Err(_));

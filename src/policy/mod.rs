@@ -127,11 +127,11 @@ impl std::fmt::Display for Moment {
 
 /// Chooses actions.
 pub trait Policy: Send {
-    /// Begins an episode; the environment has been reset. `episode` is its number in the evaluation, from 0: where episodes run in
-    /// parallel, a policy meets only some of them.
+    /// Starts an episode, after the environment was reset. `episode` is its number in the evaluation, from 0. If episodes run in
+    /// parallel, a policy gets only some of them.
     ///
     /// # Errors
-    /// The policy cannot go on.
+    /// The policy cannot continue.
     fn begin(&mut self, env: &mut Env, episode: u64) -> Result<(), PolicyError> {
         let _ = (env, episode);
         Ok(())
@@ -140,10 +140,10 @@ pub trait Policy: Send {
     /// Writes the action for the environment's current observation into `action`.
     ///
     /// # Errors
-    /// The policy cannot go on.
+    /// The policy cannot continue.
     fn act(&mut self, env: &mut Env, action: &mut Vec<f32>) -> Result<(), PolicyError>;
 
-    /// Ends learning: from here on the policy does what it has learned, without exploring. Most policies have nothing to learn.
+    /// Ends learning: from now on the policy does what it has learned, without exploring. Most policies have nothing to learn.
     fn settle(&mut self) {}
 }
 
@@ -223,7 +223,7 @@ pub enum PolicySource {
     Watching,
     /// A file that ends in `.onnx`.
     Onnx(PathBuf),
-    /// Anything else.
+    /// Any other policy.
     Command(String),
 }
 
@@ -253,7 +253,7 @@ impl PolicySource {
         }
     }
 
-    /// Tells whether the policy learns while it acts: its episodes belong together, one after another.
+    /// Returns whether the policy learns while it acts, so that its episodes belong together, one after another.
     pub fn learns(&self) -> bool {
         matches!(self, Self::Babbling | Self::Watching)
     }

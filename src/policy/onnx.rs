@@ -24,7 +24,7 @@ use crate::text::quoted;
 /// Names of outputs that hold the action; without one of them, the first output does.
 const OUTPUTS: [&str; 2] = ["action", "actions"];
 
-/// An error of an ONNX model that is to be a policy.
+/// An error of an ONNX model that serves as a policy.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[non_exhaustive]
 pub enum OnnxError {
@@ -107,9 +107,8 @@ pub enum OnnxError {
 /// a graph inside of an operator 1,000. Where the runtime panics, that is an error, and no hook for panics hears of it: the first
 /// model that is read sets one that passes all others on to the hook that was there before.
 ///
-/// A policy that was trained in the Python kit needs `compat: reference`, which has its order of proprioception and its
-/// action space. The last bits of the numbers may differ between machines: the runtime uses the vector instructions at
-/// hand.
+/// A policy that was trained in the Python kit needs `compat: reference`, which has its order of proprioception and its action space. The
+/// last bits of the numbers may differ between machines, because the runtime uses the available vector instructions.
 pub struct OnnxPolicy {
     path: PathBuf,
     model: Model,
@@ -155,7 +154,7 @@ impl OnnxPolicy {
         }
     }
 
-    /// Reads a model from memory; `name` stands for its file in errors.
+    /// Reads a model from memory. Errors name `name` as its file.
     ///
     /// # Errors
     /// Bytes that are not a model, operators that are not known.
@@ -196,8 +195,7 @@ impl OnnxPolicy {
         Ok((model, output, output_name, operators))
     }
 
-    /// Matches the model's inputs with senses, before [`OnnxPolicy::decide`]; with an environment,
-    /// [`Policy::begin`] does it.
+    /// Matches the model's inputs with senses, before [`OnnxPolicy::decide`]. With an environment, [`Policy::begin`] does it.
     ///
     /// # Errors
     /// An input that is not a sense, or of another shape or type.

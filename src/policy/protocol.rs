@@ -76,7 +76,7 @@ impl Serialize for List<'_> {
     }
 }
 
-/// An image: its shape, NumPy's name of its type, where it is not in colours, and its data, the lowest byte of a number first, in base64.
+/// An image: its shape, NumPy's name of its type unless it is in colours, and its data, little-endian, in base64.
 #[derive(Serialize)]
 struct Image<'a> {
     shape: &'a [usize],

@@ -1,4 +1,4 @@
-//! An infant that learns to look at its hands, from what its eyes see and what its joints feel.
+//! A policy that learns to look at its hands, from its eyes and its joints.
 //!
 //! A hand is what moves in sight when that hand is moved, and does not when the other one is (J. S. Watson, "The development and
 //! generalization of contingency awareness in early infancy", 1966; P. Fitzpatrick and G. Metta, "Grounding vision through
@@ -22,7 +22,7 @@ use crate::spaces::NumpyRng;
 const SETTLING: f64 = 0.5;
 /// Time in which each wrist is moved, s.
 const MOVING: f64 = 0.25;
-/// Trials in which a posture is chosen at random as long as no hand was seen; afterwards one in so many.
+/// Trials with random postures while no hand has been seen; afterwards, one in this many is random.
 const RANDOM: f64 = 0.1;
 
 /// A policy that learns to look at its hands while it acts, from its eyes and its joints alone; `watching` on the command line.
@@ -60,7 +60,7 @@ impl Watching {
     }
 }
 
-/// What the policy knows of one body, and what it is doing.
+/// The policy's knowledge of one body, and its current activity.
 #[derive(Clone, Debug)]
 struct Learner {
     limbs: Limbs,
@@ -121,7 +121,7 @@ impl Learner {
         })
     }
 
-    /// Begins a trial.
+    /// Starts a trial.
     fn start(&mut self, settled: bool) {
         self.step = 0;
         self.sight.forget();

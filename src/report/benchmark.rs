@@ -7,7 +7,7 @@ use crate::eval::{Benchmark, Interval, Row};
 use crate::text::quoted;
 
 const STYLE: &str = include_str!("style.css");
-/// Width and height of a chart row, pixels, and the room for names at its left.
+/// Width and height of a chart row, pixels, and the width for names on its left.
 const ROW: [f64; 3] = [640.0, 26.0, 210.0];
 
 /// Returns a benchmark as one page that needs no other file: a chart of each measure with its intervals, and the table.
@@ -21,7 +21,7 @@ pub fn benchmark_page(benchmark: &Benchmark) -> String {
         html lang="en" {
             head {
                 meta charset="utf-8";
-                // whatever a plan says, the page runs nothing and fetches nothing
+                // the page runs nothing and fetches nothing, whatever the plan contains
                 meta http-equiv="Content-Security-Policy" content="default-src 'none'; img-src data:; style-src 'unsafe-inline'";
                 meta name="viewport" content="width=device-width, initial-scale=1";
                 meta name="color-scheme" content="light dark";

@@ -38,7 +38,7 @@ struct Chart {
 }
 
 impl Chart {
-    /// Makes room for values.
+    /// Reserves values.
     fn include(&mut self, values: &[f64]) {
         for v in values {
             self.top = self.top.max(1.1 * v);
@@ -154,7 +154,7 @@ fn return_alone(record: &Info) -> f64 {
     record.behavior.task().map_or(0.0, |info| info.episode_return)
 }
 
-/// Charts the return of each episode, and the share of successes, which 100 % of the axis's upper end stands for.
+/// Charts the return of each episode, and the share of successes, 100 % of which is the upper end of the axis.
 fn returns(records: &[Info]) -> Chart {
     let dots: Vec<f64> = records.iter().map(return_alone).collect();
     let success = |r: &Info| r.behavior.task().is_some_and(|info| info.outcome.is_success);

@@ -16,7 +16,7 @@ pub(super) const HEIGHT: usize = 600;
 const FOVY: f64 = 9.0;
 /// Free space around MIMo, as a share of the picture's height.
 const MARGIN: f64 = 0.05;
-/// How far the arms are away from the body, rad: so that every part can be seen, or so that there is room beside him.
+/// Angle of the arms from the body, rad, so that every part is visible, or so that there is space beside him.
 const ARMS: [f64; 2] = [0.45, 0.12];
 /// Those of MIMo's joints that move the arms away from the body.
 const SHOULDERS: [&str; 2] = ["right_shoulder_ad_ab", "left_shoulder_ad_ab"];
@@ -52,8 +52,8 @@ pub(super) struct Doll {
 }
 
 impl Doll {
-    /// Takes MIMo out of a scene, without clothes, as large as the picture; returns `None` if there is no MIMo or no
-    /// camera. MIMo has a face if its textures are in `assets`.
+    /// Draws MIMo alone, without clothes, as large as the picture; returns `None` if there is no MIMo or no camera. MIMo has a face if
+    /// its textures are in `assets`.
     pub fn new(model: &Model, assets: &dyn AssetSource) -> Option<Self> {
         let mut doll = Self::posed(model, assets, [WIDTH, HEIGHT], ARMS[0])?;
         for drawable in &mut doll.scenery.drawables {

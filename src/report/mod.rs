@@ -34,7 +34,7 @@ pub enum ReportError {
         /// The folder.
         path: PathBuf,
     },
-    /// The folder is of something else.
+    /// The folder is not that of a run.
     #[error(
         "{}: not the folder of a run: it has neither logs/training.pkl nor logs/evaluation_N.pkl; run babybench train or \
          babybench evaluate into it first", path.display()
@@ -69,7 +69,7 @@ pub enum ReportError {
     },
 }
 
-/// Says in which way a folder is missing.
+/// Describes how a folder is missing.
 fn missing(path: &Path) -> &'static str {
     if path.exists() {
         "this is a file, not a folder"
@@ -92,7 +92,7 @@ impl Report {
     /// evaluation, video) is left out, with a notice.
     ///
     /// # Errors
-    /// A folder that is missing or is not that of a run; logs of which none can be read.
+    /// A folder that is missing or is not that of a run; no readable logs.
     pub fn new(save_dir: impl AsRef<Path>) -> Result<Self, ReportError> {
         Ok(Self::of(Run::read(save_dir.as_ref())?))
     }

@@ -110,7 +110,7 @@ pub(super) fn page(run: &mut Run) -> String {
         html lang="en" {
             head {
                 meta charset="utf-8";
-                // whatever a log says, the page runs nothing and fetches nothing
+                // the page runs nothing and fetches nothing, whatever the log contains
                 meta http-equiv="Content-Security-Policy"
                     content="default-src 'none'; img-src data:; style-src 'unsafe-inline'";
                 meta name="viewport" content="width=device-width, initial-scale=1";
@@ -150,7 +150,7 @@ fn header(run: &Run) -> Markup {
         header {
             p.over { "BabyBench report" }
             h1 { (title(run)) }
-            // a name may hold characters that turn what stands around it
+            // a name may contain characters that change the direction of surrounding text
             p.under { (quoted(&run.dir.display().to_string())) @if let Some(about) = about { " · " (about) } }
         }
     }

@@ -162,7 +162,7 @@ impl Run {
     }
 }
 
-/// Returns the score of a training, unless it is of a task, which has none; `skin` tells what the hands can reach.
+/// Returns the score of a training, unless it is of a task, which has none. `skin` has the parts that the hands can reach.
 fn score(training: &[Info], compat: Compat, skin: Option<&Touchables>, notices: &mut Vec<String>) -> Option<Score> {
     if training.is_empty() || training.iter().any(|r| r.behavior.task().is_some()) {
         return None;

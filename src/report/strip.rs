@@ -23,8 +23,8 @@ pub(super) struct Moment {
     pub text: String,
 }
 
-/// Finds the moments of an episode worth a picture, in their order: the first touches of each part, or the starts of
-/// the longest looks at a hand; then, as far as there is room, moments evenly spread.
+/// Finds the moments of an episode worth a picture, in their order: the first touches of each part, or the starts of the longest looks at
+/// a hand; then evenly spread moments up to the limit.
 pub(super) fn moments(log: &EvaluationLog, names: Option<&PartNames>) -> Vec<Moment> {
     let mut chosen = match log.info.first().map(|i| &i.behavior) {
         Some(BehaviorInfo::SelfTouch { .. }) => first_touches(&log.info, names),
@@ -106,7 +106,7 @@ fn looks(info: &[Info]) -> Vec<Moment> {
 /// may still grow or have been cut off.
 ///
 /// # Errors
-/// The file cannot be read, is no `.avi` file or has another coding.
+/// The file cannot be read, is not an `.avi` file or has another encoding.
 pub(super) fn frames(path: &Path, numbers: &[usize]) -> io::Result<Vec<(usize, Vec<u8>)>> {
     let broken = |what: &str| io::Error::new(io::ErrorKind::InvalidData, what.to_string());
     let mut file = io::BufReader::new(files::open(path)?);

@@ -1,7 +1,7 @@
 //! MIMo's senses: plain functions from [`crate::Model`] and [`crate::physics::State`] to observations.
 //!
-//! Positions and velocities are read as they are; everything else in the state describes the start of the last physics
-//! step, so torques, accelerations, contacts and images lag by one step, as in the reference.
+//! Positions and velocities are the current ones. Everything else in the state describes the start of the last physics step, so torques,
+//! accelerations, contacts and images lag by one step, as in the reference.
 
 mod pain;
 mod proprioception;

@@ -64,7 +64,7 @@ impl Pain {
         self.felt.save(out);
     }
 
-    /// Restores what was saved; `false` if the bytes are something else.
+    /// Restores what was saved; `false` if the bytes do not fit.
     pub(crate) fn load(&mut self, bytes: &[u8]) -> bool {
         let factors = self.softness.iter_mut().chain(&mut self.sensitivity);
         let Some((saved, mut bytes)) = bytes.split_at_checked(8 * factors.size_hint().0) else {
@@ -79,7 +79,7 @@ impl Pain {
         self.felt.load(&mut bytes) && bytes.is_empty()
     }
 
-    /// Feels the contacts of touch, which has the same skin, and goes on by one step.
+    /// Senses the contacts of touch, which has the same skin, and advances by one step.
     pub fn observe(&mut self, model: &Model, touch: &Touch) {
         let options = self.options;
         self.skin.clear();
@@ -109,7 +109,7 @@ impl Pain {
         self.felt.forget_zeros();
     }
 
-    /// Forgets the pain of the last episode.
+    /// Clears the pain of the last episode.
     pub fn reset(&mut self) {
         if self.compat == Compat::Api {
             self.felt.clear();

@@ -1,5 +1,4 @@
-//! Proprioception, the sense of one's own body: joint angles, velocities, torques, limits and the state of the
-//! actuators.
+//! Proprioception, the sense of the own body: joint angles, velocities, torques, limits and the state of the actuators.
 
 use std::ops::Range;
 
@@ -54,8 +53,8 @@ pub struct Entry {
 
 /// The layout of the proprioceptive vector: which components, in which order.
 ///
-/// Under `compat: api` the order is angles, velocities, torques, limits, actuation, of which all but the angles can be
-/// switched off; under `compat: reference` all are on, in the order actuation, limits, angles, velocities, torques.
+/// Under `compat: api` the order is angles, velocities, torques, limits, actuation, and all but the angles can be turned off. Under
+/// `compat: reference` all are on, in the order actuation, limits, angles, velocities, torques.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Proprioception {
     joints: MimoJoints,
@@ -148,8 +147,8 @@ impl Proprioception {
         entries
     }
 
-    /// Returns where a joint's number stands in angles, velocities or limits, or a sensor's three in torques, by name.
-    /// `None` for a component that is off, for [`Component::Actuation`] (see [`Self::entries`]) and unknown names.
+    /// Returns the index of a joint's number in angles, velocities or limits, or of a sensor's three numbers in torques, by name. `None`
+    /// for a component that is off, for [`Component::Actuation`] (see [`Self::entries`]) and unknown names.
     pub fn find(&self, model: &Model, component: Component, name: &str) -> Option<Range<usize>> {
         let start = self.range(component)?.start;
         let (k, width) = match component {

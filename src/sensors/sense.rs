@@ -66,7 +66,7 @@ impl Sense {
         }
     }
 
-    /// Returns how many steps late a configuration wants it to be.
+    /// Returns the delay of the sense in a configuration, in steps.
     pub(crate) fn delay(self, config: &Config) -> usize {
         let delays = &config.delays;
         let (own, of_age) = match self {
@@ -78,12 +78,12 @@ impl Sense {
         config.sense_delay(own, of_age)
     }
 
-    /// Returns whose it is: 0 for the left eye, 1 for the right; `None` for what is no eye.
+    /// Returns the index of the eye (0 left, 1 right), or `None` for other senses.
     pub(crate) fn eye(self) -> Option<usize> {
         Self::EYES.iter().position(|&eye| eye == self)
     }
 
-    /// Returns how often a second it looks, if a configuration gives it a rate of its own.
+    /// Returns the rate of the sense in a configuration, Hz, if it has one.
     pub(crate) fn rate(self, config: &Config) -> Option<f64> {
         match self {
             Self::Proprioception | Self::Vestibular => None,
@@ -93,18 +93,17 @@ impl Sense {
     }
 }
 
-/// Hands the entries of an observation to a macro, in their order: first proprioception, which every environment has, then the others,
-/// each a field with its documentation, its type, its bounds and what reports it. The name of a field is its key, but for
-/// proprioception.
+/// Passes the entries of an observation to a macro, in their order: first proprioception, which every environment has, then the others,
+/// each a field with its documentation, type, bounds and source. The name of a field is its key, except for proprioception.
 macro_rules! observation_entries {
     ($apply:ident) => {
         $apply! {
             {
-                /// Proprioception, Gymnasium's key `observation`; [`Senses::proprioception`](crate::env::Senses::proprioception) tells what stands
-                /// where. A task may append to it: the last number of `catch` is the radius of the ball, m.
+                /// Proprioception, Gymnasium's key `observation`; [`Senses::proprioception`](crate::env::Senses::proprioception)
+                /// describes its layout. A task may append to it: the last number of `catch` is the radius of the ball, m.
                 proprioception: f64, ANY, sense(Sense::Proprioception);
             }
-            /// Touch of the skin, N, if `touch_active`; [`Senses::touch`](crate::env::Senses::touch) tells what stands where.
+            /// Touch of the skin, N, if `touch_active`; [`Senses::touch`](crate::env::Senses::touch) describes its layout.
             touch: f32, ANY, sense(Sense::Touch);
             /// Touch of each body with skin, (bodies, 5), if `touch_pooled`: see [`TouchPool`](crate::sensors::TouchPool).
             touch_pooled: f64, ANY, sense(Sense::TouchPooled);
@@ -119,15 +118,15 @@ macro_rules! observation_entries {
             eye_left_gray: u8, BYTES, eye(Sense::EyeLeft, VisionOutput::Gray);
             /// Grey image of the right eye.
             eye_right_gray: u8, BYTES, eye(Sense::EyeRight, VisionOutput::Gray);
-            /// How far away is what the left eye sees, (H, W), m, if `vision_outputs` has `depth`: see
+            /// Depth image of the left eye, (H, W), m, if `vision_outputs` has `depth`: see
             /// [`SensesMut::eye_depth`](crate::env::SensesMut::eye_depth).
             eye_left_depth: f32, NOT_NEGATIVE, eye(Sense::EyeLeft, VisionOutput::Depth);
-            /// How far away is what the right eye sees.
+            /// Depth image of the right eye.
             eye_right_depth: f32, NOT_NEGATIVE, eye(Sense::EyeRight, VisionOutput::Depth);
-            /// Which geoms the left eye sees, (H, W) ids, -1 for none, if `vision_outputs` has `segmentation`: see
+            /// Segmentation image of the left eye, (H, W) geom ids, -1 for none, if `vision_outputs` has `segmentation`: see
             /// [`SensesMut::eye_segmentation`](crate::env::SensesMut::eye_segmentation).
             eye_left_segmentation: i32, IDS, eye(Sense::EyeLeft, VisionOutput::Segmentation);
-            /// Which geoms the right eye sees.
+            /// Segmentation image of the right eye.
             eye_right_segmentation: i32, IDS, eye(Sense::EyeRight, VisionOutput::Segmentation);
             /// Linear acceleration (m/s^2) and angular velocity (rad/s) of the head, if `vestibular_active`.
             vestibular: f64, ANY, sense(Sense::Vestibular);
@@ -145,18 +144,18 @@ const NOT_NEGATIVE: [f64; 2] = [0.0, f64::INFINITY];
 const BYTES: [f64; 2] = [0.0, u8::MAX as f64];
 const IDS: [f64; 2] = [-1.0, i32::MAX as f64];
 
-/// An entry of the observation: what stands under one key.
+/// An entry of the observation, with its own key.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct ObservationEntry {
     /// Its key in Gymnasium's dictionary, in files and in Python.
     pub key: &'static str,
-    /// The field of [`Observation`](crate::Observation) and [`Buffers`](crate::vector::Buffers), and the property in JavaScript: the
-    /// key, but for `proprioception`, whose key is `observation`.
+    /// The field of [`Observation`](crate::Observation) and [`Buffers`](crate::vector::Buffers), and the property in JavaScript: the key,
+    /// except for `proprioception`, whose key is `observation`.
     pub field: &'static str,
     /// The sense that reports it; `None` for goals.
     pub sense: Option<Sense>,
-    /// Which image of an eye it is; `None` for everything else.
+    /// The kind of an eye's image; `None` for other entries.
     pub image: Option<VisionOutput>,
     /// Number type.
     pub dtype: Dtype,

@@ -32,7 +32,7 @@ impl EyeImages {
         segmentation: Vec::new(),
     };
 
-    /// Makes room for images of `pixels` pixels each.
+    /// Reserves images of `pixels` pixels each.
     pub fn new(outputs: VisionOutputs, pixels: usize) -> Self {
         let len = |output| if outputs.contains(output) { pixels } else { 0 };
         Self {
@@ -108,7 +108,7 @@ impl Vision {
         })
     }
 
-    /// Returns what the left and the right eye look through: cameras of the model, and the sizes of their images.
+    /// Returns the cameras of the left and the right eye, and the sizes of their images.
     pub fn views(&self) -> [View; 2] {
         self.views
     }

@@ -47,7 +47,7 @@ impl BoxSpace {
         &self.high
     }
 
-    /// Returns whether `x` has the right length and lies within the bounds.
+    /// Returns whether `x` has the right length and is within the bounds.
     pub fn contains(&self, x: &[f32]) -> bool {
         x.len() == self.len()
             && x.iter()
@@ -56,7 +56,7 @@ impl BoxSpace {
                 .all(|((x, lo), hi)| lo <= x && x <= hi)
     }
 
-    /// Clips `x` to the bounds of component `i`; returns it unchanged if there is no such component.
+    /// Clips `x` to the bounds of component `i`; returns it unchanged if the component does not exist.
     pub fn clip(&self, i: usize, x: f32) -> f32 {
         match (self.low.get(i), self.high.get(i)) {
             (Some(low), Some(high)) => x.max(*low).min(*high),

@@ -13,8 +13,8 @@ use super::{BoxSpace, NumpyRng};
 const DEVIATION: f64 = 0.577_350_269_189_625_8;
 /// Number of processes that pink noise is the sum of. The slowest lasts 2^11 steps, about as long as an episode.
 const OCTAVES: usize = 12;
-/// Strength of the coupling of oscillators, in natural frequencies. From about 1.6 times the spread of the frequencies on,
-/// oscillators begin to swing together (Kuramoto, 1984); at this value some do and some do not.
+/// Strength of the coupling of oscillators, in natural frequencies. From about 1.6 times the spread of the frequencies on, oscillators
+/// start to synchronise (Kuramoto, 1984). At this value some do and some do not.
 const COUPLING: f64 = 0.5;
 /// Spread of the natural frequencies, as a share of their mean.
 const SPREAD: f64 = 0.25;
@@ -32,7 +32,7 @@ pub enum Noise {
     White,
     /// `held`: a uniform action that is held for a time.
     Held {
-        /// How long an action is held, s; 0.5 by default.
+        /// Duration for which an action is held, s; 0.5 by default.
         seconds: f64,
     },
     /// `ou`: an Ornstein-Uhlenbeck process for each number of the action, sampled exactly
@@ -165,7 +165,7 @@ impl ActionNoise {
         made
     }
 
-    /// Begins anew with a seed.
+    /// Restarts with a seed.
     pub fn reset(&mut self, seed: u64) {
         self.rng = NumpyRng::seed(seed);
         let (len, step, rng) = (self.space.len(), self.step, &mut self.rng);
@@ -251,7 +251,7 @@ fn share(n: usize) -> f64 {
     DEVIATION / (n as f64).sqrt()
 }
 
-/// Starts processes as they are in the long run: a start from 0 would begin every episode with a pause.
+/// Starts processes in their stationary distribution, because a start from 0 would begin every episode with a pause.
 fn relaxing(decays: Vec<f64>, len: usize, rng: &mut NumpyRng) -> Process {
     let deviation = share(decays.len());
     let values = (0..len * decays.len()).map(|_| deviation * rng.normal()).collect();
@@ -271,7 +271,7 @@ fn swing(all: &mut [Oscillator], natural: f64, step: f64, rng: &mut NumpyRng) {
         let (sin, cos) = pxfm::f_sincos(o.phase);
         let toward = field[1] * cos - field[0] * sin;
         o.phase += step * (o.speed + pull * toward) + DRIFT * step.sqrt() * rng.normal();
-        // sines of large angles cost more and are no better
+        // sines of large angles cost more and are not better
         if o.phase > PI {
             o.phase -= TAU;
         }

@@ -8,7 +8,7 @@ use std::sync::OnceLock;
 
 /// Number of layers.
 const LAYERS: usize = 128;
-/// Where the tail begins.
+/// The start of the tail.
 const TAIL: f64 = 3.442619855899;
 /// Area of a layer.
 const AREA: f64 = 9.91256303526217e-3;
@@ -49,7 +49,7 @@ pub(super) fn normal(mut word: impl FnMut() -> u64) -> f64 {
         // places (Doornik's correction of the original)
         let layer = bits as usize % LAYERS;
         let place = 2.0 * unit(bits) - 1.0;
-        // inside the layer above as well, hence under the curve: 98 or 99 of 100 numbers end here
+        // inside the layer above as well, and so under the curve: 98 or 99 of 100 numbers end here
         if place.abs() < share[layer] {
             return place * x[layer];
         }

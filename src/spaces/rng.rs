@@ -69,7 +69,7 @@ impl NumpyRng {
         low + (high - low) * self.uniform()
     }
 
-    /// Draws a whole number below `count`; 0 if there is none.
+    /// Draws a whole number below `count`, or 0 if `count` is 0.
     pub fn below(&mut self, count: usize) -> usize {
         ((self.uniform() * count as f64) as usize).min(count.saturating_sub(1))
     }

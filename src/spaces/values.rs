@@ -79,7 +79,7 @@ macro_rules! numbers {
                 }
             }
 
-            /// Returns row `row` of `rows` rows of equal length; none of its numbers, if there is no such row.
+            /// Returns row `row` of `rows` rows of equal length; empty if the row does not exist.
             pub fn row(self, row: usize, rows: usize) -> Self {
                 let len = self.len() / rows.max(1);
                 match self {

@@ -3,8 +3,8 @@
 use super::GrowthError;
 use crate::config::{Config, Key, KeyValue};
 
-/// Returns the error of an impossible body, with the measurements that alone are to blame: without any one of them the
-/// body `works`. If there is none, it names all that are given.
+/// Returns the error of an impossible body, with the measurements each of which alone is to blame: without it the body `works`. If there
+/// is none, it names all given measurements.
 pub(in crate::mimo) fn blame(
     config: &Config,
     age: f64,

@@ -5,7 +5,7 @@ use super::shapes::{Shapes, Side, long, on_x, on_z, sphere};
 
 /// Slack by which the edge of a rounded part lies within it, m.
 pub(super) const SLACK: f64 = 1e-4;
-/// Height of the neck's stump, of which only this much is left, m.
+/// Height of the remaining stump of the neck, m.
 const NECK: f64 = 2e-6;
 
 /// Lengths in which the feet and the toes of both versions are given.

@@ -40,7 +40,7 @@ pub enum GrowthError {
     Age {
         /// Key of the configuration.
         key: &'static str,
-        /// Age asked for, months.
+        /// The requested age, months.
         age: f64,
     },
     /// Measurements make an impossible body.

@@ -1,4 +1,4 @@
-//! Which part carries the muscles of an actuator.
+//! The part that carries the muscles of an actuator.
 
 use crate::mimo::Version;
 

@@ -95,7 +95,7 @@ impl<A: AssetSource> Room<A> {
     }
 }
 
-/// Says what is wrong with an added element.
+/// Describes a fault of an added element.
 fn fault(tree: &Tree, at: usize) -> Option<String> {
     let node = &tree.nodes[at];
     // settings of a model whose bodies are attached hold for it alone

@@ -61,7 +61,7 @@ pub enum RoomError {
         path: String,
         /// The changed element: its kind and name.
         part: String,
-        /// Which of its numbers, by the name of MuJoCo's array.
+        /// The number, by the name of MuJoCo's array.
         field: &'static str,
         /// Its value.
         found: String,

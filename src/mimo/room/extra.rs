@@ -9,7 +9,7 @@ use crate::mjcf_loader::Place;
 pub(super) const SHOWN: &str = "scene_extra";
 /// The file as which it is read.
 pub(in crate::mimo) const FILE: &str = "scene_extra.xml";
-/// Elements that stand in the world.
+/// Elements of the world.
 const WORLD: [&str; 6] = ["body", "geom", "site", "camera", "light", "frame"];
 /// Elements that a whole document consists of.
 const ROOTS: [&str; 2] = ["mujoco", "mujocoinclude"];
@@ -22,14 +22,14 @@ pub(super) struct Extra {
 
 /// Characters that the text does not have.
 struct Inserted {
-    /// Line and column of the text in front of which they stand.
+    /// Line and column of the text that follows them.
     line: usize,
     column: usize,
     length: usize,
 }
 
 impl Extra {
-    /// Makes a document of a text: elements of the world are put into the world, sections stay what they are.
+    /// Makes a document from a text: elements of the world go into the world, and sections remain sections.
     ///
     /// Faults of the text are for the loader to name, so that nothing is an error here.
     pub fn new(text: &str) -> Self {
@@ -73,7 +73,7 @@ impl Extra {
         self.document.push_str(what);
     }
 
-    /// Tells where a place of the document is in the text.
+    /// Maps a position in the document to one in the text.
     pub fn locate(&self, place: &mut Place) {
         place.file = SHOWN.to_string();
         for inserted in self.inserted.iter().filter(|i| i.line == place.line) {
@@ -84,7 +84,7 @@ impl Extra {
     }
 }
 
-/// Lists the elements that are in no other, each by where it begins and its name; as far as the text is XML.
+/// Lists the top elements by position and name, as far as the text is XML.
 fn top_elements(text: &str) -> Vec<(usize, String)> {
     let mut reader = Reader::from_str(text);
     let (mut depth, mut found) = (0_usize, Vec::new());
@@ -138,7 +138,7 @@ mod tests {
         }
         assert_eq!(Extra::new("<mujocoinclude><asset/></mujocoinclude>").inserted.len(), 0);
         assert_eq!(Extra::new("").document, "<mujocoinclude></mujocoinclude>");
-        // whatever is wrong is left to the loader
+        // errors are left to the loader
         for broken in ["<body", "</body>", "&<geom/>", "\u{e4}<geom/>\u{0}", "<geom></body>"] {
             Extra::new(broken);
         }

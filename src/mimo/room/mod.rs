@@ -36,7 +36,7 @@ const SETTINGS: &str = "babybench/settings.xml";
 /// The same under another name: a document may include both [`PARTS`] and `base.xml`, and no file twice.
 const SETTINGS_AGAIN: &str = "mimo_options.xml";
 
-/// The files that a custom scene includes: name, where it belongs, and its contents.
+/// The files that a custom scene includes: name, place, and contents.
 pub const PARTS: [(&str, &str, &str); 3] = [
     ("mimo.xml", "in <body name=\"mimo_location\">", "MIMo's body"),
     (
@@ -47,7 +47,7 @@ pub const PARTS: [(&str, &str, &str); 3] = [
     ("mimo_actuators.xml", "in <mujoco>", "his actuators"),
 ];
 
-/// Where the document and its files are.
+/// The source of the document and its files.
 enum Own {
     /// In this folder of the assets.
     Given(String),
@@ -71,8 +71,8 @@ pub(super) struct Room<A> {
     second: bool,
 }
 
-/// Returns what the scene of a configuration is built from: `assets`, or for a custom scene ([`Scene::File`]) its files over them,
-/// likewise what is added to a scene of the library ([`Config::scene_extra`]).
+/// Returns the assets of a configuration's scene: `assets`, or for a custom scene ([`Scene::File`]) its files over them, and likewise the
+/// additions to a scene of the library ([`Config::scene_extra`]).
 ///
 /// The document is one of `assets`, if they have its path; otherwise it is a file of the system, whose folder then has its textures and
 /// includes, and nothing outside of that folder is read. Documents of the library are found beside them, even if `assets` lack those.
@@ -200,7 +200,7 @@ impl<A: AssetSource> Room<A> {
     /// Returns whether the folder of the document has a file that is not the library's.
     fn has_own(&self, name: &str) -> bool {
         match &self.own {
-            // what lies among the library's documents replaces them
+            // files among the library's documents replace them
             Own::Given(folder) if format!("{folder}/") == FOLDER => {
                 !embedded().contains(&format!("{FOLDER}{name}")) && self.read_own(name).is_ok()
             }
@@ -222,7 +222,7 @@ impl<A: AssetSource> Room<A> {
         }
     }
 
-    /// Tells a place in a file as the user knows it.
+    /// Converts a place in a file to the one that the user sees.
     fn locate(&self, place: &mut Place) {
         let Some(name) = place.file.strip_prefix(FOLDER).filter(|name| !self.library(name)) else {
             return;

@@ -51,7 +51,7 @@ pub(super) fn original(name: &str) -> Option<&str> {
     name.strip_prefix(FILE)
 }
 
-/// Gives everything in a document of the library other names. `None` for what is no XML, which the library's documents are.
+/// Renames everything in a document of the library. `None` if it is not XML, which the library's documents are.
 pub(super) fn renamed(document: &[u8]) -> Option<Vec<u8>> {
     let text = std::str::from_utf8(document).ok()?;
     let mut reader = Reader::from_str(text);
@@ -71,7 +71,7 @@ pub(super) fn renamed(document: &[u8]) -> Option<Vec<u8>> {
     }
 }
 
-/// Renames what an element is called and what it refers to.
+/// Renames an element and its references.
 fn element(start: &BytesStart<'_>) -> Option<BytesStart<'static>> {
     let mut out = BytesStart::new(start.name().as_ref().to_string());
     for attribute in start.attributes() {

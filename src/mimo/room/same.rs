@@ -1,4 +1,4 @@
-//! Whether the MIMo of a custom scene is the library's.
+//! Comparison of a custom scene's MIMo with the library's.
 
 use std::borrow::Cow;
 use std::fmt::Debug;
@@ -61,7 +61,7 @@ impl<A: AssetSource> Room<A> {
     }
 }
 
-/// Compares some arrays of two models, each at its own index. What is said stands once, as it is larger than a comparison.
+/// Compares some arrays of two models, each at its own index. The message is built in one place, because it is larger than a comparison.
 macro_rules! compare {
     ($part:expr, $a:ident[$i:expr], $b:ident[$j:expr]: $($field:ident)*) => {
         let (i, j) = ($i, $j);
@@ -87,7 +87,7 @@ fn look(model: &Model, geom: usize) -> Option<Material> {
     material.map(|material| Material { texture, ..material })
 }
 
-/// Says what differs. It is one function for all types and kept apart, since modules of the page hold what stands at each call.
+/// Describes a difference. It is one function for all types and kept apart, because modules of the page contain the code of every call.
 #[cold]
 #[inline(never)]
 fn differs(part: String, field: &'static str, found: &dyn Debug, expected: &dyn Debug) -> Difference {
@@ -153,7 +153,7 @@ fn by_name(model: &Model, usual: &Model) -> Option<Difference> {
         compare!(part, model[i], usual[j]:
             actuator_trntype actuator_gear actuator_ctrllimited actuator_ctrlrange actuator_forcelimited actuator_forcerange actuator_gainprm
             actuator_biastype actuator_biasprm);
-        // a document may ask for room for more numbers
+        // a document may reserve more numbers
         let (found, expected) = (&model.actuator_user[i], &usual.actuator_user[j]);
         if !found.starts_with(expected) {
             return Some(differs(part, "actuator_user", found, expected));

@@ -20,7 +20,7 @@ pub struct Unused {
 
 /// Lists the attributes in the files of a custom scene that change nothing here; none for a scene of the library.
 ///
-/// Everything else that a document says has its effect, as what is not understood is an error.
+/// Everything else in a document has an effect, because unknown content is an error.
 ///
 /// # Errors
 /// A document that cannot be read.

@@ -45,7 +45,7 @@ impl Arms {
                 let above = model.in_subtree(own, body) && !model.in_subtree(other, body);
                 above || model.in_subtree(body, own)
             };
-            // muscles have a block of numbers after another; what moves other bodies stands at the end
+            // muscles have several blocks of numbers; actuators of other bodies are at the end
             let own_numbers = space.len() - env.actuation().others().len().min(space.len());
             let all = (0..own_numbers).filter(|d| actuators.get(d % actuators.len().max(1)).is_some_and(|&a| moves(a)));
             all.collect()
@@ -58,7 +58,7 @@ impl Arms {
         })
     }
 
-    /// Tells whether an environment has the same body.
+    /// Returns whether an environment has the same body.
     pub(super) fn fits(&self, env: &Env) -> bool {
         self.skinned.len() == env.model().ngeom() && self.space.len() == env.action_space().len()
     }

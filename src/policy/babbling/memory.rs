@@ -1,4 +1,4 @@
-//! Movements and what they led to.
+//! Movements and their outcomes.
 
 use crate::spaces::NumpyRng;
 
@@ -68,7 +68,7 @@ impl Memory {
         &self.movements[index].0
     }
 
-    /// Adds a movement; where there is no room, in the place of one by chance that was not done twice.
+    /// Adds a movement. If the memory is full, it replaces a random one that was not repeated.
     pub(super) fn add(&mut self, movement: Movement, outcome: Outcome, rng: &mut NumpyRng) {
         let entry = (movement, vec![outcome]);
         if self.movements.len() < MOVEMENTS {
@@ -87,7 +87,7 @@ impl Memory {
         outcomes.push(outcome);
     }
 
-    /// Finds what promises most in a posture. `worth` tells the hand of a pair and what a touch of it is worth now.
+    /// Finds the most promising movement in a posture. `worth` returns the hand of a pair and the current value of its touch.
     ///
     /// The promise of a movement is the mean worth of its outcomes, weighted by how near their postures are, over the square root of its
     /// time: long movements touch more, but not in proportion.

@@ -1,8 +1,8 @@
-//! How much a model would make: sizes that stand in it are bounded before it is loaded.
+//! Bounds on a model's sizes, checked before it is loaded.
 //!
-//! The runtime allocates what a model asks for, and a failure to allocate ends the process. The file is protobuf; what is
-//! read here are the constants and attributes of its graphs (`onnx.proto`: `ModelProto.graph`, `GraphProto.initializer`,
-//! `NodeProto`, `TensorProto`). Sizes that the model computes are not seen.
+//! The runtime allocates what a model asks for, and a failed allocation ends the process. The file is protobuf. This reads the constants
+//! and attributes of its graphs (`onnx.proto`: `ModelProto.graph`, `GraphProto.initializer`, `NodeProto`, `TensorProto`). It does not see
+//! sizes that the model computes.
 
 use std::collections::BTreeMap;
 
@@ -11,7 +11,7 @@ use super::{runtime, wire};
 
 /// Greatest number of values that one operator may make.
 const MOST: f64 = (1 << 26) as f64;
-/// Greatest factor by which one operator may enlarge what it is given.
+/// Greatest factor by which one operator may enlarge its input.
 const MOST_LARGER: f64 = (1 << 16) as f64;
 /// Greatest number of turns of a loop.
 const MOST_TURNS: f64 = (1 << 20) as f64;
@@ -35,7 +35,7 @@ fn product(sizes: impl IntoIterator<Item = f64>) -> f64 {
     sizes.into_iter().map(|size| size.abs().max(1.0)).product()
 }
 
-/// Checks an attribute of an operator with which an image could grow, or that is the shape of what it makes.
+/// Checks an attribute of an operator that could enlarge an image, or that is the shape of its output.
 fn check_attribute(node: &[u8], attribute: &[u8]) -> Result<(), String> {
     let (name, values) = (name(attribute), of_attribute(attribute).values);
     let by = match name {
@@ -70,7 +70,7 @@ fn check_shape(node: &[u8], sizes: &[f64]) -> Result<(), String> {
     Ok(())
 }
 
-/// Checks factors by which an operator enlarges what it is given.
+/// Checks the factors by which an operator enlarges its input.
 fn check_factors(node: &[u8], factors: &[f64]) -> Result<(), String> {
     if product(factors.iter().copied()) > MOST_LARGER {
         return Err(format!(

@@ -1,4 +1,4 @@
-//! Numbers that stand in a model: tensors and attributes of operators (`onnx.proto`: `TensorProto`, `AttributeProto`).
+//! Constants in a model: tensors and attributes of operators (`onnx.proto`: `TensorProto`, `AttributeProto`).
 
 use super::wire::{self, Field, varint};
 
@@ -9,7 +9,7 @@ pub(super) const LIST: usize = 64;
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Numbers {
     pub(super) values: Vec<f64>,
-    /// Whether they are whole numbers by their type.
+    /// Whether their type is a whole number.
     pub(super) whole: bool,
 }
 

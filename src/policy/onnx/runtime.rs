@@ -8,20 +8,20 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Graphs of more operators are planned on a stack of their own.
 pub(super) const SHALLOW: usize = 1000;
-/// Most operators of a graph: [`STACK`] has room for them in a row, four times over in a release build.
+/// Maximum number of operators of a graph: [`STACK`] holds them in a row, four times over in a release build.
 pub(super) const MOST: usize = if cfg!(target_arch = "wasm32") { SHALLOW } else { 10_000 };
 /// Bytes of the stack for large graphs.
 const STACK: usize = 64 << 20;
 
 thread_local! {
-    /// Whether this thread is inside of the runtime.
+    /// Whether this thread is inside the runtime.
     static INSIDE: Cell<bool> = const { Cell::new(false) };
 }
 /// Calls that are under way in the process.
 static CALLS: AtomicUsize = AtomicUsize::new(0);
 
-/// Calls the runtime for a model whose largest graph has `operators` operators; what it says when it panics is the error, and nobody
-/// else hears it.
+/// Calls the runtime for a model whose largest graph has `operators` operators. The message of a panic becomes the error and is not
+/// printed.
 pub(super) fn call<T: Send>(operators: usize, work: impl FnOnce() -> T + Send) -> Result<T, String> {
     let guarded = move || {
         CALLS.fetch_add(1, Ordering::Relaxed);

@@ -7,11 +7,11 @@ use crate::spaces::NumpyRng;
 const KEPT: usize = 8;
 /// Variations: standard deviations in half ranges of the joints, one of these by chance.
 const VARIATIONS: [f64; 4] = [0.03, 0.07, 0.15, 0.3];
-/// How well a hand is seen at least, so that its posture is worth varying.
+/// Minimum visibility of a hand for its posture to be varied.
 const SEEN: f64 = 0.01;
 /// Share of the trials that do the best one again: what was seen by chance is not seen twice.
 const AGAIN: f64 = 0.15;
-/// Share of the trials that vary one of the best postures of both hands, rather than put together those of each.
+/// Share of the trials that vary one of the best postures of both hands, instead of combining those of each.
 const TOGETHER: f64 = 0.6;
 
 /// A posture, and how well each hand was seen in it.
@@ -19,7 +19,7 @@ const TOGETHER: f64 = 0.6;
 pub(super) struct Trial {
     pub(super) posture: Vec<f64>,
     pub(super) seen: [f64; HANDS],
-    /// How often it was tried; `seen` is the mean.
+    /// Number of trials, of which `seen` is the mean.
     times: u32,
 }
 
@@ -69,7 +69,7 @@ impl Archive {
         insert(&mut self.both, &trial, None);
     }
 
-    /// Returns the posture of the next trial; `random` is the share of those that are drawn anew.
+    /// Returns the posture of the next trial. `random` is the share of new random ones.
     pub(super) fn propose(&self, limbs: &Limbs, rng: &mut NumpyRng, random: f64) -> Vec<f64> {
         let chance = rng.uniform();
         if let Some(best) = self.best().filter(|_| chance < AGAIN) {
@@ -97,7 +97,7 @@ impl Archive {
         for (k, limb) in limbs.limbs().enumerate() {
             let parent = match limb {
                 Limb::Head => head,
-                // an arm whose hand was not seen is drawn anew
+                // an arm whose hand was not seen gets a new random posture
                 _ => limb
                     .hand()
                     .and_then(|hand| parents[hand].as_ref().filter(|trial| trial.seen[hand] > SEEN)),

@@ -15,7 +15,7 @@ const DAMPING: f64 = 0.15;
 const SWING: f64 = 0.5;
 const RATE: f64 = 4.0;
 
-/// What a number of an action moves.
+/// The effect of a number of an action.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Limb {
     /// The arm of a hand: the joints above its palm.
@@ -24,7 +24,7 @@ pub(super) enum Limb {
     Wrist(usize),
     /// The head.
     Head,
-    /// Anything else.
+    /// Any other joint.
     Other,
 }
 
@@ -42,7 +42,7 @@ impl Limb {
 #[derive(Clone, Debug)]
 struct Drive {
     limb: Limb,
-    /// Where its angle and its velocity stand in proprioception.
+    /// Indices of its angle and its velocity in proprioception.
     angle: usize,
     velocity: Option<usize>,
     /// Its range, rad.
@@ -113,7 +113,7 @@ impl Limbs {
         })
     }
 
-    /// Tells whether an environment has the same body.
+    /// Returns whether an environment has the same body.
     pub(super) fn fits(&self, env: &Env) -> bool {
         let model = env.model();
         self.space.len() == env.action_space().len() && env.actuation().actuators().len() == self.drives.len() && {

@@ -1,4 +1,4 @@
-//! Where in the pictures of both eyes something moves with a hand.
+//! Detection of pixels of both eyes that move with a hand.
 
 use super::limbs::HANDS;
 use crate::env::Env;
@@ -8,7 +8,7 @@ use crate::policy::PolicyError;
 const EYES: usize = 2;
 /// Change of a pixel's brightness that counts as movement, of 255, in the mean over the pictures of a movement.
 const LEAST: f32 = 8.0;
-/// How much more than with the other hand it has to change: what shakes the head moves all of the picture, with either hand.
+/// Factor by which a pixel must change more than with the other hand. A shaking head moves the whole picture with either hand.
 const CLEAR: f32 = 2.0;
 /// Turning of the head or of an eye, rad, that halves what is found: with it, everything moves in the pictures.
 const TURN: f64 = 0.01;
@@ -20,14 +20,14 @@ const NEAR: [f32; 2] = [0.7, 0.1];
 /// Time between two pictures that are compared, s.
 const APART: f64 = 0.03;
 
-/// What was seen in a trial.
+/// The observations of a trial.
 #[derive(Clone, Debug)]
 pub(super) struct Sight {
     /// For each hand, eye and pixel the sum of the changes while that hand moved.
     changes: Vec<f32>,
     /// The pictures with which the next ones are compared, in shades of grey.
     last: Vec<f32>,
-    /// How near each pixel of the pictures is to the middle of its own, 0 to 1, by eye.
+    /// The weight of each pixel by its distance from the middle of its picture, 0 to 1, by eye.
     weights: [Vec<f32>; EYES],
     /// Number of pictures compared for each hand.
     counts: [u32; HANDS],
@@ -39,7 +39,7 @@ pub(super) struct Sight {
 }
 
 impl Sight {
-    /// Makes room for the pictures of an environment.
+    /// Reserves the pictures of an environment.
     pub(super) fn new(env: &Env) -> Result<Self, PolicyError> {
         let seen = env.observation();
         if seen.eye_left.is_none() || seen.eye_right.is_none() {
@@ -70,7 +70,7 @@ impl Sight {
         })
     }
 
-    /// Forgets what was seen.
+    /// Clears the observations.
     pub(super) fn forget(&mut self) {
         self.changes.fill(0.0);
         self.counts = [0; HANDS];
@@ -124,7 +124,7 @@ impl Sight {
                         all += 1.0;
                     }
                 }
-                // a hand covers an area; what is smaller may be something else
+                // a hand covers an area; a smaller region may be something else
                 f64::from(inside / all.max(AREA * self.weights[eye].len() as f32))
             };
             let turned = self.gaze[hand].iter().map(|[low, high]| high - low).fold(0.0, f64::max);

@@ -9,25 +9,25 @@ use crate::eval::Score;
 use crate::report::run::{Evaluated, Run};
 use crate::report::strip::{frames, moments};
 
-/// The counters of an evaluation episode by itself. Under `compat: reference` counters and lists go on from episode to episode.
+/// The counters of a single evaluation episode. Under `compat: reference` counters and lists continue from episode to episode.
 #[derive(Default)]
 struct Alone {
-    /// Parts that each hand touched; where lists go on, those that are new.
+    /// Parts that each hand touched; only new ones if lists continue.
     parts: Option<[usize; 2]>,
     /// Steps with a hand in view.
     counts: Option<[u64; 4]>,
-    /// The score that the episode has alone, if its record tells.
+    /// The score of the episode alone, if its record has one.
     score: Option<f64>,
 }
 
-/// Returns what an episode counted by itself; `before` is the end of the episode before it.
+/// Returns the counters of a single episode. `before` is the end of the previous one.
 fn alone(evaluated: &Evaluated, before: Option<&Info>) -> Alone {
     let (Some(first), Some(last)) = (evaluated.log.info.first(), evaluated.log.info.last()) else {
         return Alone::default();
     };
     let steps = evaluated.log.len() as u64;
     if let (Some(start), Some(end)) = (first.behavior.touches(), last.behavior.touches()) {
-        // lists that go on start with those of the episode before
+        // continued lists start with those of the previous episode
         let old = before.and_then(|info| info.behavior.touches());
         let old = old.filter(|old| old.iter().zip(start).all(|(old, start)| start.starts_with(old)));
         let old = old.map_or([0; 2], |old| old.map(<[usize]>::len));
@@ -65,7 +65,7 @@ fn alone(evaluated: &Evaluated, before: Option<&Info>) -> Alone {
     }
 }
 
-/// Returns what each episode counted by itself.
+/// Returns the counters of each episode.
 fn all_alone(run: &Run) -> Vec<Alone> {
     let goes_on = run.compat() == Compat::Reference;
     let mut before: Option<&Evaluated> = None;
@@ -152,7 +152,7 @@ fn strip(run: &Run, evaluated: &Evaluated) -> std::io::Result<Markup> {
     })
 }
 
-/// Says how an episode of a task ended.
+/// Describes how an episode of a task ended.
 fn outcome(outcome: &Outcome) -> &'static str {
     match (outcome.is_success, outcome.is_failure) {
         (true, _) => "success",

@@ -1,4 +1,4 @@
-//! Where a ray first meets a geom, for the picture of the skin.
+//! Intersections of rays and geoms, for the picture of the skin.
 
 use crate::math::*;
 use crate::model::GeomType;

@@ -30,7 +30,7 @@ pub struct TouchContact {
     pub point: Vec3,
     /// Point of contact, m, frame of the body.
     pub point_body: Vec3,
-    /// Whether sensors are near enough to feel it; set by [`Touch::sense`](super::Touch::sense).
+    /// Whether sensors are near enough to sense it; set by [`Touch::sense`](super::Touch::sense).
     pub felt: bool,
     /// Index of the body in [`SkinLayout::bodies`].
     pub(super) index: usize,

@@ -113,8 +113,8 @@ impl Grid {
         }
     }
 
-    /// Returns the sensor nearest to `p`, the first among equally near ones; `None` without sensors. The search begins
-    /// within `radius` (m).
+    /// Returns the sensor nearest to `p`, the first among equally near ones; `None` without sensors. The search starts within `radius`
+    /// (m).
     pub fn nearest(&self, p: Vec3, radius: f64) -> Option<u32> {
         let mut best = (f64::INFINITY, u32::MAX);
         let mut consider = |sensor: u32, d2: f64| {
@@ -123,8 +123,8 @@ impl Grid {
             }
         };
         self.around(p, radius, &mut consider);
-        // nothing within the radius, and the cells visited are not a ball: only a look at all sensors is exact. It is
-        // rare, as contacts lie on the skin
+        // nothing within the radius, and the visited cells are not a ball, so only a search over all sensors is exact. It is rare,
+        // because contacts are on the skin
         if best.0 > radius * radius {
             best = (f64::INFINITY, u32::MAX);
             for (i, &sensor) in self.sensor.iter().enumerate() {

@@ -34,7 +34,7 @@ impl Bundle {
     }
 }
 
-/// The convex hull of a set of points, as half spaces in a tree of bundles, most of which are dismissed at once.
+/// The convex hull of a set of points, as half spaces in a tree of bundles, most of which are rejected together.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Hull {
     planes: Vec<HalfSpace>,
@@ -42,7 +42,7 @@ pub struct Hull {
 }
 
 impl Hull {
-    /// Creates the hull of `points`, of which any number may be coplanar or cospherical. `None` if they span no volume.
+    /// Creates the hull of `points`. Any number of them may be coplanar or cospherical. `None` if they span no volume.
     ///
     /// Points that leave the hull by less than 1e-12 times its size are taken to be on it, far below the spacing of
     /// sensors and far above rounding, so that rings, walls and grids need no special treatment.

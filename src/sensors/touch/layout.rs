@@ -137,7 +137,7 @@ impl SkinLayout {
     /// body, `None` if the body has none.
     ///
     /// # Errors
-    /// Fails if a distance is not finite and positive, or so small that there are more than [`MAX_SENSORS`].
+    /// Returns an error if a distance is not finite and positive, or so small that there are more than [`MAX_SENSORS`].
     pub fn with_spacing(model: &Model, spacing: impl Fn(&str) -> Option<f64>) -> Result<Self, SkinError> {
         Self::place(model, |body| spacing(&model.body_name[body]))
     }

@@ -207,7 +207,7 @@ impl Touch {
         self.sense(model, &s.contact, &s.xpos, &s.xmat);
     }
 
-    /// Senses `contacts`, with body poses `xpos` (m) and `xmat` of the same instant, in place of earlier values.
+    /// Senses `contacts`, with body poses `xpos` (m) and `xmat` of the same instant, replacing earlier values.
     ///
     /// The cost grows with the number of contacts, not of sensors; nothing is allocated after a few calls.
     pub fn sense(&mut self, model: &Model, contacts: &[Contact], xpos: &[Vec3], xmat: &[Mat3]) {

@@ -11,7 +11,7 @@ pub const POOLED: usize = 5;
 /// - the number of its sensors whose value is not zero,
 /// - the sum of the forces that its sensors feel, N, x, y and z in the frame of the body.
 ///
-/// This sense is babybench's own: no version of MIMo has it.
+/// This sense is babybench's own. No version of MIMo has it.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct TouchPool {
     /// For each body of the skin, in its order, the place among the values.

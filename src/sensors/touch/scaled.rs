@@ -6,8 +6,8 @@ use crate::math::{Vec3, add, mat_t_vec, mat_vec, quat_normalize, quat_to_mat, su
 use crate::model::{GeomType, Model};
 
 impl SkinLayout {
-    /// Returns the same sensors on a model whose geoms have other sizes and places: as many, in the same order, each where it
-    /// was on its geom. The models have the same bodies and geoms.
+    /// Returns the same sensors, in the same order, on a model whose geoms have other sizes and places. Each keeps its place on its geom.
+    /// The models have the same bodies and geoms.
     ///
     /// The distance between the sensors of a body is scaled by the largest ratio of its geoms' bounding radii.
     pub fn scaled(&self, from: &Model, to: &Model) -> Self {

@@ -51,15 +51,15 @@ pub struct AcuityOptions {
     pub age: f64,
     /// Height of the field of view, degrees; pixels are square.
     pub fovy: f64,
-    /// Whether to follow the authors' Python code, which blurs across the borders, as if images went on with their opposite
-    /// side, truncates instead of rounding, is half a frequency off in images of odd size, and takes the field of view to be that of
-    /// the longer side.
+    /// Whether to follow the authors' Python code, which blurs across the borders, as if images continued with their opposite side,
+    /// truncates instead of rounding, is half a frequency off in images of odd size, and takes the field of view to be that of the longer
+    /// side.
     pub reference: bool,
 }
 
-/// Blurs colours and gray as an eye of some age sees them. The spectrum of the image is multiplied by a transfer function
-/// that is 1 up to 0.1 cycles per degree and falls to 0.01 at the cut-off of the age, in a straight line over the
-/// logarithms of both; distances and ids stay. Beyond its border an image goes on as its mirror image.
+/// Blurs colours and gray as an eye of a given age sees them. The spectrum of the image is multiplied by a transfer function that is 1 up
+/// to 0.1 cycles per degree and falls to 0.01 at the cut-off of the age, linearly over the logarithms of both. Depth and segmentation do
+/// not change. Beyond its border an image continues as its mirror image.
 #[derive(Clone, Debug)]
 pub struct Acuity {
     options: AcuityOptions,
@@ -71,7 +71,7 @@ pub struct Acuity {
     plane: Plane,
 }
 
-/// How images go on beyond their border.
+/// The continuation of images beyond their border.
 #[derive(Clone, Debug)]
 enum Filter {
     /// As their mirror image.

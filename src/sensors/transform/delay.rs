@@ -11,7 +11,7 @@ pub(in crate::sensors) trait Waiting {
     /// Takes over the values of another of the same size.
     fn assign(&mut self, other: &Self);
     fn save(&self, out: &mut Vec<u8>);
-    /// Restores the memory saved at the front of `bytes`; `false` if they are something else.
+    /// Restores the memory saved at the front of `bytes`; `false` if they do not fit.
     fn load(&mut self, bytes: &mut &[u8]) -> bool;
     fn memory(&self) -> usize;
 }
@@ -166,11 +166,11 @@ impl<T: Waiting + Clone> Ring<T> {
         (self.next, self.filled) = (0, true);
     }
 
-    /// Writes the values in the order in which they come out.
+    /// Writes the values in the order of their release.
     fn save(&self, out: &mut Vec<u8>) {
         out.push(u8::from(self.filled));
         if self.filled {
-            // independent of where the ring happens to stand, so equal delays have equal snapshots
+            // independent of the ring's position, so equal delays have equal snapshots
             let (late, early) = self.slots.split_at(self.next);
             early.iter().chain(late).for_each(|slot| slot.save(out));
         }
@@ -189,7 +189,7 @@ impl<T: Waiting + Clone> Ring<T> {
     }
 }
 
-/// Vectors of single-precision numbers, such as actions, that come out a number of steps after they went in.
+/// A delay line for vectors of single-precision numbers, such as actions.
 ///
 /// ```
 /// use babybench::sensors::transform::DelayLine;
@@ -207,7 +207,7 @@ pub struct DelayLine {
 }
 
 impl DelayLine {
-    /// Creates a line for vectors of a length. The first one comes out until the line is full.
+    /// Creates a line for vectors of a length. It returns the first one until it is full.
     pub fn new(steps: usize, len: usize) -> Self {
         Self {
             ring: Ring::new(steps, vec![0.0; len]),
@@ -220,7 +220,7 @@ impl DelayLine {
         self.ring.slots.len()
     }
 
-    /// Puts values in, and returns those that come out.
+    /// Pushes values, and returns the delayed ones.
     ///
     /// # Panics
     /// Values of another length.
@@ -230,7 +230,7 @@ impl DelayLine {
         &self.values
     }
 
-    /// Fills the line with values, which come out before those that go in from now on.
+    /// Fills the line with values, which it returns before later ones.
     ///
     /// # Panics
     /// Values of another length.
@@ -281,7 +281,7 @@ impl Delay {
             }
             Signal::Skin(values) => {
                 let zeros = SkinValues::new(values.sensors(), values.width());
-                // a clone would not keep the room for all sensors
+                // a clone would not keep the capacity for all sensors
                 let slots = (0..steps).map(|_| SkinValues::new(zeros.sensors(), zeros.width()));
                 Memory::Skin(Box::new(Ring {
                     slots: slots.collect(),

@@ -41,8 +41,8 @@ pub(super) trait Transform {
 /// Filters of pictures that repeat beyond their borders.
 pub(super) type Fourier = Filter<Columns>;
 
-/// Filters of pictures that go on beyond their borders as in a mirror. Number k of a column of the spectrum is the frequency of k half
-/// waves over the height.
+/// Filters of pictures that continue beyond their borders as mirror images. Number k of a column of the spectrum is the frequency of k
+/// half waves over the height.
 pub(super) type Mirrored = Filter<Cosines>;
 
 /// Filters of pictures of `height` by `width` by one kind of transform.
@@ -52,7 +52,7 @@ pub(super) struct Filter<T> {
     width: usize,
     down: T,
     across: T,
-    /// Room for the picture with rows and columns exchanged.
+    /// A buffer for the picture with rows and columns exchanged.
     turned: Plane,
 }
 
@@ -67,7 +67,7 @@ impl<T: Transform> Filter<T> {
         }
     }
 
-    /// Multiplies the spectrum of a picture by `transfer`, which stands column by column, and transforms it back.
+    /// Multiplies the spectrum of a picture by `transfer`, stored column by column, and transforms it back.
     pub fn filter(&mut self, picture: &mut Plane, transfer: &[f64]) {
         let (height, width) = (self.height, self.width);
         let turned = &mut self.turned;

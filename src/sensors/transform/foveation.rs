@@ -30,7 +30,7 @@ struct Source {
 }
 
 impl Foveation {
-    /// Creates the warp of images of `height` by `width` pixels; `strength` is at least 0, where it does nothing.
+    /// Creates the warp of images of `height` by `width` pixels. `strength` is at least 0, which leaves images unchanged.
     pub fn new(strength: f64, height: usize, width: usize) -> Self {
         let centre = [width as f64 / 2.0, height as f64 / 2.0];
         let radius = (centre[0] * centre[0] + centre[1] * centre[1]).sqrt();
@@ -38,7 +38,7 @@ impl Foveation {
         let source = |x: usize, y: usize| {
             let off = [x as f64 - centre[0], y as f64 - centre[1]];
             let r = (off[0] * off[0] + off[1] * off[1]).sqrt();
-            // limits of the formula, where it is 0 / 0
+            // limits of the formula at 0 / 0
             let shrunk = match (strength > 0.0, r > 0.0) {
                 (false, _) => 1.0,
                 (true, false) => log / strength,

@@ -1,4 +1,4 @@
-//! The values between two looks of a sense that looks less often than the environment steps.
+//! The values of a sense between two samples, if it samples less often than the environment steps.
 
 use super::{Signal, Waiting};
 use crate::sensors::{EyeImages, SkinValues};
@@ -17,7 +17,7 @@ enum Kept {
 }
 
 impl Hold {
-    /// Makes room for signals of the size of `like`, whose values do not matter.
+    /// Reserves signals of the size of `like`, whose values are ignored.
     pub fn new(like: &Signal<'_>) -> Self {
         let kept = match like {
             Signal::Numbers(values) => Kept::Numbers(vec![0.0; values.len()]),
@@ -60,7 +60,7 @@ impl Hold {
         }
     }
 
-    /// Takes over what [`Hold::save`] wrote; `false` if the bytes are something else.
+    /// Restores what [`Hold::save`] wrote; `false` if the bytes do not fit.
     pub fn load(&mut self, mut bytes: &[u8]) -> bool {
         let bytes = &mut bytes;
         let loaded = match &mut self.kept {

@@ -87,8 +87,7 @@ pub trait Transform: CloneTransform + Send + Sync {
     /// Describes it in a few words, with units, for `inspect`.
     fn describe(&self) -> String;
 
-    /// Changes the values of the sense. Random numbers come from the generator of the environment, so that the same seed
-    /// gives the same bits.
+    /// Changes the values of the sense. Random numbers come from the generator of the environment, so the same seed gives the same bits.
     fn apply(&mut self, signal: Signal<'_>, rng: &mut NumpyRng);
 
     /// Clears its memory, at the start of an episode.
@@ -99,12 +98,12 @@ pub trait Transform: CloneTransform + Send + Sync {
         let _ = out;
     }
 
-    /// Restores the memory that [`Transform::save`] wrote. Returns `false` if the bytes are something else.
+    /// Restores the memory that [`Transform::save`] wrote. Returns `false` if the bytes do not fit.
     fn load(&mut self, bytes: &[u8]) -> bool {
         bytes.is_empty()
     }
 
-    /// Returns the memory that it takes, bytes, by which a vector decides how many environments fit.
+    /// Returns its memory, bytes, from which a vector computes how many environments fit.
     fn memory(&self) -> usize {
         0
     }
@@ -112,7 +111,7 @@ pub trait Transform: CloneTransform + Send + Sync {
 
 /// Makes transforms behind a pointer cloneable; every [`Transform`] that is [`Clone`] has it.
 pub trait CloneTransform {
-    /// Returns a copy, which remembers the same.
+    /// Returns a copy with the same memory.
     fn clone_transform(&self) -> Box<dyn Transform>;
 }
 

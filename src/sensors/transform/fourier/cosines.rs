@@ -12,7 +12,7 @@ pub struct Cosines {
     columns: Columns,
     /// Cosine and sine of pi k / 2 n.
     quarter: Vec<[f64; 2]>,
-    /// Room for the picture in another order of its rows.
+    /// A buffer for the picture with its rows in another order.
     room: Plane,
 }
 
@@ -81,7 +81,7 @@ impl Transform for Cosines {
 }
 
 impl Cosines {
-    /// Returns which row of the picture stands at a place in the Fourier transform: those of even number, then the odd ones backwards.
+    /// Returns the row of the picture at an index of the Fourier transform: the even rows, then the odd ones backwards.
     #[inline(always)]
     fn row_at(&self, place: usize) -> usize {
         let n = self.length;
