@@ -105,7 +105,7 @@ def start(folder):
 
 
 def kills(command, which, count):
-    """Kills a command this many times in one folder; returns what stands in the table."""
+    """Kills a command this many times in one folder. Returns the entry of the table."""
     with tempfile.TemporaryDirectory() as folder:
         start(folder)
         before = episodes(folder)
@@ -120,7 +120,7 @@ def kills(command, which, count):
 
 
 def finish(folder):
-    """A run that nothing disturbs goes on from there, and cleans up."""
+    """An undisturbed run continues from there, and cleans up."""
     trained, _ = episodes(folder)
     last = run(folder, ["train", "--config", "c.yml", "--train-for", str(5 * trained + 20), "--resume", "--quiet"])
     if last.returncode:

@@ -1,6 +1,6 @@
 """The native part: scenes, environments and vectors of environments, in Rust.
 
-Prefer the package itself; this is what it is made of. Every array that is returned is a fresh copy, unless said
+Prefer the package itself, which is built on this module. Every array that is returned is a fresh copy, unless said
 otherwise. Errors are Python's own: ``ValueError``, ``TypeError``, ``KeyError``, ``FileNotFoundError``, ``RuntimeError``.
 """
 
@@ -107,9 +107,9 @@ class Recorder:
         """Makes the folder."""
 
     def begin(self, env: Env, episode: int) -> None:
-        """Begins an episode at the present moment."""
+        """Starts an episode at the current moment."""
     def step(self, env: Env, action: npt.ArrayLike) -> tuple[dict[str, _Array], float, bool, bool]:
-        """Applies an action, as ``Env.step`` does, and records what comes of it."""
+        """Applies an action, as ``Env.step`` does, and records the result."""
     def end(self, env: Env) -> None:
         """Writes the episode."""
 
@@ -172,11 +172,11 @@ class Env:
     def reset_to(self, qpos: npt.ArrayLike, qvel: npt.ArrayLike) -> dict[str, _Array]:
         """Starts an episode at positions (nq) and velocities (nv), without start actions."""
     def set_state(self, qpos: npt.ArrayLike, qvel: npt.ArrayLike) -> dict[str, _Array]:
-        """Puts the scene at positions (nq) and velocities (nv) in the middle of an episode and computes everything."""
+        """Moves the scene to positions (nq) and velocities (nv) in the middle of an episode and computes everything."""
     def set_mocap(self, body: str, pos: Sequence[float], quat: Sequence[float]) -> None:
-        """Puts a body with ``mocap="true"`` at a position (m) and an orientation (w, x, y, z), from the next step on."""
+        """Moves a body with ``mocap="true"`` to a position (m) and an orientation (w, x, y, z), from the next step on."""
     def refresh(self) -> dict[str, _Array]:
-        """Computes poses, contacts, forces and senses of the present state, without advancing."""
+        """Computes poses, contacts, forces and senses of the current state, without advancing."""
     def step(self, action: npt.ArrayLike) -> tuple[dict[str, _Array], float, bool, bool]:
         """Applies an action; returns observation, reward, terminated and truncated."""
     def run(self, actions: npt.ArrayLike) -> None:
@@ -184,7 +184,7 @@ class Env:
     def observation(self) -> dict[str, _Array]:
         """Returns the observation of the last reset, step or :meth:`refresh`."""
     def eyes(self) -> dict[str, _Array]:
-        """Returns the images of the last observation, and draws them if nobody has yet."""
+        """Returns the images of the last observation, and draws them if they are not drawn yet."""
     def info(self, details: bool = True) -> dict[str, Any]:
         """Returns the information of the last step; ``details`` adds names of touched parts and angles of gaze (rad)."""
     def other_spaces(self) -> list[tuple[tuple[_Array, _Array], int]]:
@@ -201,15 +201,15 @@ class Env:
     def reward_terms(self) -> int:
         """Number of values that the reward depends on beside goals."""
     def accumulate_info(self, on: bool) -> None:
-        """Sets whether resets leave the counters and lists of the behavior as they are."""
+        """Sets whether resets keep the counters and lists of the behavior."""
     def close(self) -> None:
-        """Frees the environment; whatever is called afterwards but ``close`` and ``closed`` raises ``RuntimeError``."""
+        """Frees the environment. Later calls other than ``close`` and ``closed`` raise ``RuntimeError``."""
     @property
     def closed(self) -> bool:
         """Whether it was closed."""
     @property
     def ready(self) -> bool:
-        """Whether a step may follow: there was a reset, and nothing diverged since."""
+        """Whether a step may follow: there was a reset, and nothing has diverged since."""
     @property
     def blueprint(self) -> Blueprint:
         """What it was made from."""
@@ -223,7 +223,7 @@ class Env:
     def seed_action_space(self, seed: int) -> None:
         """Seeds the generator of :meth:`sample_action` and of start actions, as ``action_space.seed`` does."""
     def draw_from(self, drawn: int) -> None:
-        """Puts the generator of random choices to where it has drawn ``drawn`` numbers since it was seeded."""
+        """Moves the generator of random choices to its position after ``drawn`` numbers."""
     def sample_action(self) -> npt.NDArray[np.float32]:
         """Returns a random action, the same that ``action_space.sample()`` draws from the same seed."""
 
@@ -238,7 +238,7 @@ class Env:
     def write_state(self, name: str, values: npt.ArrayLike) -> None:
         """Writes ``qpos``, ``qvel``, ``ctrl``, ``act``, ``qfrc_applied`` or ``qacc_warmstart``.
 
-        What follows from them is computed by the next step, or by :meth:`forward`.
+        The next step, or :meth:`forward`, computes derived quantities.
         """
     def apply_force(self, body: int, force: Sequence[float], point: Sequence[float]) -> None:
         """Adds a force (N, world) on a body at a point (m, world); it acts until :meth:`release_forces` or a reset."""
@@ -251,7 +251,7 @@ class Env:
         ``solreffriction``, ``solimp``, ``includemargin``, ``efc_address``, ``force`` (6, contact frame, N and N m).
         """
     def snapshot(self) -> bytes:
-        """Returns the present moment, from which a run continues with the same bits."""
+        """Takes a snapshot, from which a run continues with the same bits."""
     def restore(self, snapshot: bytes) -> None:
         """Goes back to a snapshot of this environment, or of another of the same configuration and scene."""
     def resume(self, snapshot: bytes) -> dict[str, _Array]:
@@ -260,7 +260,7 @@ class Env:
         """Lets MIMo make another face, in all that is drawn from now on.
 
         Raises:
-            ValueError: There is no such face.
+            ValueError: The face does not exist.
         """
     def model_array(self, name: str) -> _Array:
         """Returns an array of the model by MuJoCo's name, with what was changed, or an option: ``opt.gravity``."""
@@ -312,7 +312,7 @@ class ActionNoise:
     def sample(self) -> npt.NDArray[np.float32]:
         """Returns the next action."""
     def reset(self, seed: int) -> None:
-        """Begins anew."""
+        """Restarts."""
 
 @final
 class View:
@@ -328,13 +328,13 @@ class View:
         """Whether the policy may move MIMo; actions are 0 otherwise."""
     @property
     def watched(self) -> bool:
-        """Whether somebody has looked within the last two seconds."""
+        """Whether a page was open within the last two seconds."""
     def attend(self, env: Env) -> str:
         """Shows the environment to those who ask and says what is next: ``step``, ``reset``, or ``wait`` after 0.05 s."""
     def stepped(self, env: Env, seconds: float) -> None:
-        """Says that a step of this many simulated seconds has been taken."""
+        """Reports a step of this many simulated seconds."""
     def restarted(self, env: Env) -> None:
-        """Says that an episode has begun."""
+        """Reports the start of an episode."""
     def close(self) -> None:
         """Closes the page."""
 
@@ -356,10 +356,10 @@ class PhysicsModel:
 
     @staticmethod
     def from_file(path: str | os.PathLike[str]) -> PhysicsModel:
-        """Compiles a file; what it includes and its textures are where it says, as for MuJoCo."""
+        """Compiles a file. Includes and textures are found as MuJoCo finds them."""
     @staticmethod
     def from_text(text: str, files: Mapping[str, bytes], folder: str | os.PathLike[str]) -> PhysicsModel:
-        """Compiles a text, with files in place of those in and around a folder that it names."""
+        """Compiles a text, with files that replace those in and around a folder that it names."""
     def copy(self) -> PhysicsModel:
         """Returns a model of its own with the same numbers."""
     @property
@@ -367,7 +367,7 @@ class PhysicsModel:
         """The memory of the numbers that a program may change; steps read them."""
     @property
     def layout(self) -> list[tuple[str, list[int]]]:
-        """Names and shapes of what lies in :attr:`memory`, in its order."""
+        """Names and shapes of the arrays in :attr:`memory`, in order."""
     def array(self, name: str) -> _Array:
         """Returns a compiled array."""
     def names(self) -> dict[str, list[str]]:
@@ -387,18 +387,18 @@ class PhysicsData:
     """The groups of arrays, as bits."""
 
     def __new__(cls, model: PhysicsModel) -> PhysicsData:
-        """Makes a state of which nothing is computed."""
+        """Creates a state without computed quantities."""
     @property
     def memory(self) -> _Floats:
         """The memory of all arrays: what is written into the group ``input`` is what the next computation starts from."""
     @property
     def eq_active(self) -> npt.NDArray[np.uint8]:
-        """Which equality constraints hold."""
+        """The active equality constraints."""
     @property
     def layout(self) -> list[tuple[str, int, list[int]]]:
-        """Names, groups and shapes of what lies in :attr:`memory`, in its order."""
+        """Names, groups and shapes of the arrays in :attr:`memory`, in order."""
     def reset(self, key: int | None = None) -> None:
-        """Starts anew, or from a keyframe."""
+        """Resets, to a keyframe if given."""
     def step(self, count: int) -> None:
         """Advances by some time steps."""
     def forward(self, groups: int) -> None:
@@ -480,7 +480,7 @@ class VectorEnv:
     ) -> tuple[dict[str, _Array], _Floats, _Flags, _Flags, npt.NDArray[np.int64]]:
         """Waits for ``n`` environments: observations, rewards, terminated, truncated, and which they are."""
     def eyes(self, copy: bool = False) -> dict[str, _Array]:
-        """Returns the images of the last rows, and draws them if nobody has yet."""
+        """Returns the images of the last rows, and draws them if they are not drawn yet."""
     def close(self) -> None:
         """Ends the threads and frees the environments."""
     @property
@@ -498,7 +498,7 @@ class VectorEnv:
         ``reward_terms`` (N, terms).
         """
     def failures(self) -> list[tuple[int, str]]:
-        """Returns the environments that could not go on in the last step, and why."""
+        """Returns the environments that could not continue in the last step, with the reasons."""
     def final_observations(self) -> list[tuple[int, dict[str, _Array]]]:
         """Returns the last observations of the episodes that ended in the last step, with ``same_step``."""
     def info(self, env: int, details: bool = True) -> dict[str, Any]:
@@ -520,7 +520,7 @@ class VectorEnv:
         """Number of threads that step environments."""
     @property
     def clipped_threads(self) -> str | None:
-        """Why there are fewer threads than asked for, if there are."""
+        """The reason why there are fewer threads than requested, if so."""
     @property
     def in_flight(self) -> int:
         """Number of environments that were sent and have not been received."""
@@ -537,7 +537,7 @@ class VectorEnv:
     def config(self, env: int) -> dict[str, Any]:
         """Returns the configuration of one environment."""
     def snapshot(self, env: int) -> bytes:
-        """Returns the present moment of one environment."""
+        """Takes a snapshot of one environment."""
     def restore(self, env: int, snapshot: bytes) -> None:
         """Takes one environment back to a snapshot."""
     def model_array(self, env: int, name: str) -> _Array:
@@ -566,7 +566,7 @@ class Parts:
 
     def __new__(cls, env: Env) -> Parts: ...
     def reset_data(self) -> None:
-        """Forgets the past: ``qpos0`` at rest, of which nothing is computed."""
+        """Resets to ``qpos0`` at rest, without computing anything from it."""
     def forward(self, qpos: npt.ArrayLike, qvel: npt.ArrayLike) -> None:
         """Computes everything at positions (nq,) and velocities (nv,), without sensing it."""
     def set_position(self, qpos: npt.ArrayLike, qvel: npt.ArrayLike) -> None:
@@ -578,7 +578,7 @@ class Parts:
     def physics_step(self) -> None:
         """Advances by one physics step, without sensing."""
     def observe(self) -> None:
-        """Senses the present state."""
+        """Senses the current state."""
     def track(self) -> None:
         """Counts what the behavior counts."""
     def clear_info(self) -> None:
@@ -620,7 +620,7 @@ class Parts:
 
 @final
 class Blocks:
-    """What a sense felt last, as arrays by key: touch (sensors, 1 or 3), N, or parts of the proprioception."""
+    """The last values of a sense, as arrays by key: touch (sensors, 1 or 3), N, or parts of the proprioception."""
 
     def __new__(cls, env: Env, touch: bool, blocks: Sequence[tuple[Any, int, int]]) -> Blocks:
         """Takes keys, each with its first sensor or number and the one after its last."""

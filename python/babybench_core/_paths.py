@@ -1,4 +1,4 @@
-"""Where modules are looked for: beside the installed package, in the folders of a checkout."""
+"""Search paths of modules: beside the installed package, in the folders of a checkout."""
 
 from __future__ import annotations
 

@@ -24,7 +24,7 @@ def arrays(
 
     Raises:
         TypeError: Something that is not a mapping of names.
-        KeyError: There is no such array or element.
+        KeyError: The array or element does not exist.
         ValueError: Numbers of another shape.
     """
     if not isinstance(changes, Mapping):

@@ -36,7 +36,7 @@ VERSION = 1
 
 
 class Episode(Mapping[str, np.ndarray]):
-    """An episode of a record: arrays by name, read when they are asked for.
+    """An episode of a record: arrays by name, read on first use.
 
     Arrays of steps have a row for each; ``record.manifest["arrays"]`` says what each one is. Touch and contacts are
     sparse: :meth:`touch` and :meth:`contacts` have those of a step.
@@ -213,7 +213,7 @@ class Record(Exports, Mapping[int, Episode]):
         """Makes an environment of the record's configuration; keywords replace its keys.
 
         Raises:
-            ValueError: A key that there is not, or a value that is not allowed.
+            ValueError: An unknown key, or a value that is not allowed.
         """
         from babybench_core.env import Env
 
@@ -298,7 +298,7 @@ class Recorder:
         self._episode = -1
 
     def reset(self, **options: Any) -> tuple[Any, dict[str, Any]]:
-        """Ends the episode, resets the environment, and begins to record the next one."""
+        """Ends the episode, resets the environment, and starts recording the next one."""
         self.end()
         observation, info = self.env.reset(**options)
         self._episode += 1
@@ -306,7 +306,7 @@ class Recorder:
         return observation, info
 
     def step(self, action: Any) -> tuple[Any, float, bool, bool, dict[str, Any]]:
-        """Steps the environment, and records what comes of it."""
+        """Steps the environment, and records the result."""
         core = self.env._core
         observation, reward, terminated, truncated = self._native.step(core, action)
         return observation, reward, terminated, truncated, core.info()

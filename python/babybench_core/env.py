@@ -90,7 +90,7 @@ class Env(gymnasium.Env[Observation, npt.NDArray[Any]]):
             **keys: Keys of the configuration that replace those of ``config``; ``babybench.config_keys()`` lists them.
 
         Raises:
-            FileNotFoundError: There is no such file or folder.
+            FileNotFoundError: The file or folder does not exist.
             ValueError: An unknown key, a value that is not allowed, assets that cannot be read. A keyword that is not a key is
                 a ``TypeError``, too.
         """
@@ -249,7 +249,7 @@ class Env(gymnasium.Env[Observation, npt.NDArray[Any]]):
             (height, width, 3): red, green, blue, rows from the top.
 
         Raises:
-            KeyError: There is no such camera.
+            KeyError: The camera does not exist.
         """
         return self._core.render(camera, width, height)
 
@@ -299,7 +299,7 @@ class Env(gymnasium.Env[Observation, npt.NDArray[Any]]):
         """Returns a copy of an array of the scene or of its state by MuJoCo's name, such as ``jnt_range`` or ``xpos``.
 
         Raises:
-            KeyError: There is no such array.
+            KeyError: The array does not exist.
         """
         if name in self._core.STATE_ARRAYS:
             return self._core.state_array(name)
@@ -336,7 +336,7 @@ class Env(gymnasium.Env[Observation, npt.NDArray[Any]]):
     # --- other moments ---
 
     def snapshot(self) -> bytes:
-        """Returns the present moment; :meth:`restore` comes back to it, and goes on with the same bits."""
+        """Takes a snapshot; :meth:`restore` returns to it and continues with the same bits."""
         return self._core.snapshot()
 
     def restore(self, snapshot: bytes) -> None:
@@ -345,7 +345,7 @@ class Env(gymnasium.Env[Observation, npt.NDArray[Any]]):
         Touch and images are those of that moment from the next step on.
 
         Raises:
-            ValueError: A snapshot of something else, or a damaged one; nothing has happened then.
+            ValueError: A snapshot of another environment, or a damaged one; nothing has changed then.
         """
         self._core.restore(snapshot)
 
@@ -355,7 +355,7 @@ class Env(gymnasium.Env[Observation, npt.NDArray[Any]]):
         Nothing but pictures changes; the next step has the same bits as without.
 
         Raises:
-            ValueError: There is no such face; nothing has happened then.
+            ValueError: The face does not exist; nothing has changed then.
         """
         old, core, snapshot = self.config, self._core, self._core.snapshot()
         self.config = _native.config_from_mapping({**old, "facial_expression": expression})
@@ -372,11 +372,11 @@ class Env(gymnasium.Env[Observation, npt.NDArray[Any]]):
         core.close()
 
     def set_state(self, qpos: npt.ArrayLike, qvel: npt.ArrayLike) -> Observation:
-        """Puts the scene at positions (nq; m, rad, quaternions) and velocities (nv; m/s, rad/s) and observes it."""
+        """Moves the scene to positions (nq; m, rad, quaternions) and velocities (nv; m/s, rad/s) and observes it."""
         return self._core.set_state(qpos, qvel)
 
     def set_mocap(self, body: str, pos: Sequence[float], quat: Sequence[float] = (1.0, 0.0, 0.0, 0.0)) -> None:
-        """Puts a body with ``mocap="true"`` at a position (world, m) and an orientation (w, x, y, z), from the next step on.
+        """Moves a body with ``mocap="true"`` to a position (world, m) and an orientation (w, x, y, z), from the next step on.
 
         It stays there until it is put elsewhere, and a reset puts it back where the document has it. Bodies of the key
         ``mocap_motion`` follow their paths instead.
@@ -387,7 +387,7 @@ class Env(gymnasium.Env[Observation, npt.NDArray[Any]]):
         >>> env.set_mocap("hand", [0.2, 0.1, 0.4])
 
         Raises:
-            KeyError: There is no such body.
+            KeyError: The body does not exist.
             ValueError: A number is not finite.
         """
         self._core.set_mocap(body, list(pos), list(quat))
@@ -399,7 +399,7 @@ class Env(gymnasium.Env[Observation, npt.NDArray[Any]]):
         against each other.
 
         Raises:
-            KeyError: There is no such joint.
+            KeyError: The joint does not exist.
         """
         with locks.known(target, self._core.blueprint):
             return locks.within_limits(self._core.lock(target, angle), angle, self._core.blueprint)
@@ -410,7 +410,7 @@ class Env(gymnasium.Env[Observation, npt.NDArray[Any]]):
             return self._core.unlock(target)
 
     def __getattr__(self, name: str) -> Any:
-        """Says what to use instead of attributes that the starter kit's environments have.
+        """Suggests replacements of attributes that the starter kit's environments have.
 
         Raises:
             AttributeError: Always.
@@ -418,7 +418,7 @@ class Env(gymnasium.Env[Observation, npt.NDArray[Any]]):
         hints.refuse(self, name, hints.ENV)
 
     def __getstate__(self) -> dict[str, Any]:
-        """Returns what a copy needs to go on with the same bits."""
+        """Returns the state that a copy needs to continue with the same bits."""
         state = self.__dict__.copy()
         for made in ("_core", "_window", "proprioception", "touch"):
             state.pop(made, None)

@@ -54,7 +54,7 @@ PROPRIOCEPTION: Mapping[str, str] = {
 
 
 def refuse(owner: Any, name: str, hints: Mapping[str, str]) -> NoReturn:
-    """Tells what to use instead of an attribute.
+    """Suggests a replacement of an attribute.
 
     Raises:
         AttributeError: Always.

@@ -63,7 +63,7 @@ def play_motion(
         **keys: Keys of the configuration that replace those of ``config``.
 
     Raises:
-        FileNotFoundError: There is no such file.
+        FileNotFoundError: The file does not exist.
         FileExistsError: The folder has a record.
         ValueError: A damaged file, numbers that are not finite, joints that MIMo does not have, muscles that are to track.
     """

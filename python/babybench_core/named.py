@@ -68,7 +68,7 @@ class Element:
 
 
 class Named:
-    """The look-up of elements by number and by name, which models and states share."""
+    """Look-up of elements by number and by name, shared by models and states."""
 
     _names: dict[str, list[str]]
     _numbers: dict[str, dict[str, int]]

@@ -1,4 +1,4 @@
-"""Movements without a purpose, by which infants babble and learners explore."""
+"""Random movements, with which infants babble and learners explore."""
 
 from __future__ import annotations
 
@@ -55,7 +55,7 @@ class ActionNoise:
         return np.stack(actions) if self._many else actions[0]
 
     def reset(self, seed: int = 0) -> None:
-        """Begins anew."""
+        """Restarts."""
         for k, noise in enumerate(self._noises):
             noise.reset(seed + k)
 

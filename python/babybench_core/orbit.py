@@ -1,4 +1,4 @@
-"""A camera that people steer around a scene, and where it shows points of the world."""
+"""A camera that users move around a scene, and its projection."""
 
 from __future__ import annotations
 

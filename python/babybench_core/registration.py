@@ -24,7 +24,7 @@ IDS = {
 
 
 def register() -> None:
-    """Tells Gymnasium the names, once."""
+    """Registers the names with Gymnasium, once."""
     vectors = "vector_entry_point" in gymnasium.envs.registration.EnvSpec.__dataclass_fields__
     examples = config_examples()
     for name, example in IDS.items():

@@ -122,7 +122,7 @@ class VecEnv(BaseVecEnv):
         return [values[env] for env in self._get_indices(indices)]
 
     def set_attr(self, attr_name: str, value: Any, indices: Indices = None) -> None:
-        """Refuses: environments of a vector have no attributes of their own."""
+        """Raises an error, because environments of a vector have no attributes of their own."""
         raise AttributeError(f"cannot set {attr_name!r}: environments of a vector have no attributes of their own")
 
     def env_method(self, method_name: str, *args: Any, indices: Indices = None, **kwargs: Any) -> list[Any]:
@@ -136,7 +136,7 @@ class VecEnv(BaseVecEnv):
 
 
 def sparse(features_dim: int = 64) -> dict[str, Any]:
-    """Returns keyword arguments for PPO and A2C with ``"MultiInputPolicy"``, by which they learn faster from a whole skin.
+    """Returns keyword arguments for PPO and A2C with ``"MultiInputPolicy"``, with which they learn faster from a whole skin.
 
     The networks are those of Stable-Baselines3 without these arguments, two layers of 64 with tanh for actions and two for
     values. Their outputs and gradients are the same but for rounding, as what is left out is 0. Normalised observations

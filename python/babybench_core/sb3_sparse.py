@@ -28,7 +28,7 @@ class SparseRolloutBuffer(DictRolloutBuffer):
     """
 
     def reset(self) -> None:
-        """Makes room for a rollout."""
+        """Allocates a rollout."""
         super().reset()
         self._columns: dict[str, torch.Tensor] = {}
 
@@ -59,7 +59,7 @@ class SparseExtractor(BaseFeaturesExtractor):
     """
 
     def __init__(self, observation_space: gymnasium.spaces.Dict, features_dim: int = 64) -> None:
-        """Makes a layer with so many outputs."""
+        """Creates a layer with this many outputs."""
         super().__init__(observation_space, features_dim)
         networks, self.parts, inputs = {}, [], 0
         for key, space in observation_space.spaces.items():

@@ -36,7 +36,7 @@ def read_config(config: ConfigLike = None, **keys: object) -> dict[str, Any]:
         **keys: Keys that replace those of ``config``; a path starts at the working directory.
 
     Raises:
-        FileNotFoundError: There is no such file.
+        FileNotFoundError: The file does not exist.
         ValueError: An unknown key or a value that is not allowed; the text names it and what is allowed.
         TypeError: A value of a type that no key has, or a keyword that is not a key.
     """
@@ -73,7 +73,7 @@ def _read_file(path: Path, examples: list[str]) -> dict[str, Any]:
 def blueprint(config: Mapping[str, object], assets: Optional[Union[str, os.PathLike[str]]] = None) -> Blueprint:
     """Compiles a scene, or returns the one that environments of the same configuration use already.
 
-    A scene of one's own is compiled each time, as its files may have changed.
+    A custom scene is compiled each time, because its files may have changed.
 
     Args:
         config: A configuration; keys left out have their default.
@@ -91,10 +91,10 @@ def blueprint(config: Mapping[str, object], assets: Optional[Union[str, os.PathL
 
 
 def camera_of(blueprint: Blueprint, camera: Optional[str]) -> str:
-    """Returns the camera that was asked for, or that of the room; tasks have none, and show what the left eye sees.
+    """Returns the requested camera, or that of the room. Tasks have none and show the left eye's view.
 
     Raises:
-        ValueError: There is no such camera.
+        ValueError: The camera does not exist.
     """
     cameras = blueprint.model_names["camera"]
     if camera is None:

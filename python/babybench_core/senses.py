@@ -17,7 +17,7 @@ UNITS = {"angles": "rad", "velocities": "rad/s", "torques": "N m", "limits": "",
 
 
 class Proprioception:
-    """The entry ``observation``: the sense of one's own body.
+    """The entry ``observation``: the sense of the own body.
 
     Example:
         >>> import babybench
@@ -35,7 +35,7 @@ class Proprioception:
 
     @cached_property
     def slices(self) -> dict[str, slice]:
-        """Where each component stands: ``angles`` (rad), ``velocities`` (rad/s), ``torques`` (N m), ``limits``, ``actuation``."""
+        """The slice of each component: ``angles`` (rad), ``velocities`` (rad/s), ``torques`` (N m), ``limits``, ``actuation``."""
         slices: dict[str, slice] = {}
         for component, _, start, stop in self._entries:
             first = slices[component].start if component in slices else start
@@ -62,10 +62,10 @@ class Proprioception:
         return names
 
     def where(self, component: str, name: str) -> slice:
-        """Returns where a joint or sensor stands in the vector.
+        """Returns the index of a joint or sensor in the vector.
 
         Raises:
-            KeyError: There is no such component or name.
+            KeyError: The component or name does not exist.
         """
         for found, entry, start, stop in self._entries:
             if (found, entry) == (component, name):
@@ -73,7 +73,7 @@ class Proprioception:
         raise KeyError(f"proprioception has no {name!r} in {component!r}")
 
     def __getattr__(self, name: str) -> Any:
-        """Says what to use instead of attributes that the starter kit's sense has.
+        """Suggests replacements of attributes that the starter kit's sense has.
 
         Raises:
             AttributeError: Always.
@@ -109,12 +109,12 @@ class TouchLayout:
 
     @cached_property
     def positions(self) -> dict[str, Floats]:
-        """Where the sensors of each body are, (sensors of the body, 3), m, in the frame of the body."""
+        """Positions of the sensors of each body, (sensors of the body, 3), m, in the frame of the body."""
         return {body["name"]: body["positions"] for body in self._layout}
 
     @cached_property
     def slices(self) -> dict[str, slice]:
-        """Where each body stands in the observation."""
+        """The slice of each body in the observation."""
         starts = [(body["name"], body["offset"], len(body["positions"])) for body in self._layout]
         return {name: slice(self.width * at, self.width * (at + count)) for name, at, count in starts}
 
@@ -144,7 +144,7 @@ class Touch(TouchLayout):
         self._core = core
 
     def sparse(self) -> tuple[npt.NDArray[np.int64], npt.NDArray[np.float32]]:
-        """Returns the sensors that contacts reach, ascending (K), and what they feel, (K, width), N; all others feel 0."""
+        """Returns the active sensors, ascending (K), and their forces, (K, width), N. All others are 0."""
         return self._core.touched()
 
     def of(self, body: str) -> npt.NDArray[np.float32]:
@@ -176,7 +176,7 @@ class Touch(TouchLayout):
         return world
 
     def __getattr__(self, name: str) -> Any:
-        """Says what to use instead of attributes that the starter kit's sense has.
+        """Suggests replacements of attributes that the starter kit's sense has.
 
         Raises:
             AttributeError: Always.

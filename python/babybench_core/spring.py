@@ -49,7 +49,7 @@ class Spring:
 
     @property
     def at(self) -> Floats:
-        """Where the point of the body is now, m, in the world."""
+        """Current position of the point, m, in the world."""
         body = self._body or 0
         at: Floats = self._core.state_array("xpos")[body] + self._frame(body) @ self._point
         return at

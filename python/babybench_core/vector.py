@@ -23,7 +23,7 @@ try:
 except ImportError:  # Gymnasium before 1.1
 
     class AutoresetMode(Enum):  # type: ignore[no-redef]
-        """When an environment whose episode has ended starts the next one."""
+        """When an environment starts the next episode."""
 
         NEXT_STEP = "NextStep"
         SAME_STEP = "SameStep"
@@ -64,7 +64,7 @@ _SINGLE = {
 class VectorEnv(gymnasium.vector.VectorEnv):  # type: ignore[type-arg, unused-ignore]
     """Environments that are stepped together, on all cores.
 
-    What environment i returns has the same bits as if it were alone, whatever the number of threads. While threads
+    Environment i returns the same bits as if it were alone, whatever the number of threads. While threads
     step, Python's lock is free.
 
     Information comes as arrays over environments: ``steps`` (N), and by behavior ``touches`` (N, 2, geoms), which geoms
@@ -275,7 +275,7 @@ class VectorEnv(gymnasium.vector.VectorEnv):  # type: ignore[type-arg, unused-ig
 
         Raises:
             ValueError: Actions of another shape, or with numbers that are not finite; nothing is sent then.
-            IndexError: There is no such environment.
+            IndexError: The environment does not exist.
             RuntimeError: An environment that is under way already, or needs a reset.
         """
         self._core.send(actions, np.arange(self.num_envs) if ids is None else ids)
@@ -330,7 +330,7 @@ class VectorEnv(gymnasium.vector.VectorEnv):  # type: ignore[type-arg, unused-ig
             [0.3, 0.3]
 
         Raises:
-            AttributeError: There is no such method or attribute.
+            AttributeError: The method or attribute does not exist.
         """
         values = self.get_attr(name)
         return tuple(value(*args, **kwargs) if callable(value) else value for value in values)
@@ -339,7 +339,7 @@ class VectorEnv(gymnasium.vector.VectorEnv):  # type: ignore[type-arg, unused-ig
         """Returns an attribute of one environment for each of them: ``config``, ``action_space``, or a method such as ``info``.
 
         Raises:
-            AttributeError: There is no such attribute.
+            AttributeError: The attribute does not exist.
         """
         if name in _EACH:
             method = getattr(self, name)
@@ -444,7 +444,7 @@ class VectorEnv(gymnasium.vector.VectorEnv):  # type: ignore[type-arg, unused-ig
         infos.update(_sparse("final_info", rows, details))
 
     def __getstate__(self) -> dict[str, Any]:
-        """Returns what a copy needs to go on with the same bits.
+        """Returns the state that a copy needs to continue with the same bits.
 
         Raises:
             RuntimeError: Environments are under way.

@@ -27,7 +27,7 @@ class View:
     """A page on which people see an environment, turn the camera, pull bodies by a spring, stop time and hurry it.
 
     A program either steps the environment itself and calls :meth:`show` after each step, or lets :meth:`play` or :meth:`start` do
-    both. Pictures are drawn when a browser asks for one; a view at which nobody looks draws nothing. In a notebook a view
+    both. Pictures are drawn when a browser asks for one; a view without an open page draws nothing. In a notebook a view
     that ends a cell is an ``<iframe>``.
 
     Example:
@@ -39,7 +39,7 @@ class View:
         True
 
     Attributes:
-        url: The address of the page, on this machine alone, with a word that nobody can guess. From another machine, forward
+        url: The address of the page, on this machine alone, with a secret word. From another machine, forward
             its port: ``ssh -L PORT:127.0.0.1:PORT``.
     """
 
@@ -50,8 +50,8 @@ class View:
 
         Args:
             env: An environment of this package, or wrappers around one.
-            port: The port of the page; 0 is any that is free.
-            title: What stands above the picture; by default the behavior and the scene.
+            port: The port of the page; 0 is any free port.
+            title: The title above the picture; by default the behavior and the scene.
             height: Pixels of the frame in a notebook.
 
         Raises:
@@ -79,11 +79,10 @@ class View:
     def show(self) -> bool:
         """Shows the environment after the program's step, and returns when it is time for the next.
 
-        While nobody looks it returns at once: a closed or hidden page does not hold the program, not even one on which time
-        stands.
+        While no page is open it returns immediately: a closed, hidden or paused page does not hold the program.
 
         Returns:
-            Whether somebody wants a new episode (the button "Start again"); the program may do so.
+            Whether a new episode was requested (the button "Start again").
         """
         if not self._native.watched:
             return False
@@ -123,7 +122,7 @@ class View:
         return self
 
     def stop(self) -> None:
-        """Gives the environment back to the program; the page stands still.
+        """Returns control of the environment to the program; the page pauses.
 
         Raises:
             Exception: What the policy or the environment has raised meanwhile.
@@ -214,12 +213,12 @@ def view(
     environment back.
 
     Args:
-        env: An environment, which the program steps; or what :func:`babybench.make` takes, which then lives by itself
-            (:meth:`View.start`).
-        policy: What moves MIMo, who then lives by himself, too: see :meth:`View.play`.
-        port: As of :class:`View`.
-        title: As of :class:`View`.
-        height: As of :class:`View`.
+        env: An environment that the program steps; or the arguments of :func:`babybench.make`, for an environment that
+            steps itself (:meth:`View.start`).
+        policy: The policy that moves MIMo. With one the environment also steps itself: see :meth:`View.play`.
+        port: See :class:`View`.
+        title: See :class:`View`.
+        height: See :class:`View`.
 
     Raises:
         TypeError: This is not an environment of this package.

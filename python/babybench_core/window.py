@@ -73,7 +73,7 @@ class Window:
 
     @property
     def speed(self) -> float:
-        """How many simulated seconds pass in one."""
+        """Simulated seconds per second."""
         return _SPEEDS[self._speed]
 
     # --- time ---

@@ -72,7 +72,7 @@ def one_environment(example: str, rounds: int) -> None:
 
 
 def scripts(example: str, rounds: int) -> None:
-    """Prints what scripts written for the starter kit pay for what they look at."""
+    """Prints the costs of the attributes that scripts for the starter kit read."""
     import babybench.utils as bb_utils
 
     steps = 100 if example == "self_touch" else 20

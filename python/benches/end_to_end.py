@@ -1,4 +1,4 @@
-"""Whole runs, this package and the starter kit by turns: what a user waits for, from the start of Python on.
+"""Whole runs of this package and of the starter kit by turns: a user's waiting time, from the start of Python on.
 
     python benches/end_to_end.py KIT --kit-python KIT_PYTHON
 
@@ -71,7 +71,7 @@ def ratios(pairs: list[tuple[tuple[float, float, float], ...]], column: int) -> 
 
 
 def has_learner(python: str) -> bool:
-    """Tells whether a Python has Stable-Baselines3."""
+    """Returns whether a Python has Stable-Baselines3."""
     find = "import importlib.util as i, sys; sys.exit(i.find_spec('stable_baselines3') is None)"
     return subprocess.run([python, "-c", find], check=False).returncode == 0
 

@@ -25,7 +25,7 @@ def start(*arguments: str) -> subprocess.Popen[bytes]:
 
 
 def listens(port: int) -> bool:
-    """Says whether a port of this machine is open."""
+    """Returns whether a port of this machine is open."""
     with socket.socket() as to:
         return to.connect_ex(("127.0.0.1", port)) == 0
 

@@ -47,7 +47,7 @@ class Memory:
         self.used = 0
 
     def add(self, action: torch.Tensor, duration: int) -> int:
-        """Adds a movement; where there is no room, in the place of one by chance that was not done twice."""
+        """Adds a movement. If the memory is full, it replaces a random one that was not repeated."""
         if self.used < ROOM:
             at, self.used = self.used, self.used + 1
         else:
@@ -79,7 +79,7 @@ class Memory:
 
 
 class Babbling:
-    """What the infants do, and what they know."""
+    """The infants' movements, and their memory."""
 
     def __init__(self, names: list[str], low: np.ndarray, high: np.ndarray, angles: int, pairs: int) -> None:
         """Knows nothing yet."""

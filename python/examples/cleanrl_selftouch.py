@@ -27,7 +27,7 @@ class Novelty(gymnasium.Wrapper[Any, Any, Any, Any]):
     """Proprioception and touch, with a reward for each sensor that feels something for the first time in the episode."""
 
     def reset(self, **options: Any) -> tuple[Any, dict[str, Any]]:
-        """Begins an episode in which nothing is known."""
+        """Starts an episode without knowledge."""
         observation, info = self.env.reset(**options)
         self._known = observation["touch"] != 0
         return observation, info

@@ -22,7 +22,7 @@ import numpy as np
 
 
 def record(out: str, config_file: str, steps: int) -> None:
-    """Runs the environment as scripts for the kit do, and keeps what it says."""
+    """Runs the environment as scripts for the kit do, and keeps the results."""
     sys.path.insert(0, os.getcwd())
     import yaml
 

@@ -1,4 +1,4 @@
-"""Draws MIMo's skin: every touch sensor where it is, and what it feels.
+"""Draws MIMo's skin: the position of every touch sensor, and its force.
 
 Run it with ``python plot_touch.py``; it writes ``touch.png``.
 """

@@ -1,4 +1,4 @@
-"""A first look: MIMo moves at random; what it senses, by name; and a picture of it.
+"""A first look: random movements, senses by name, and a picture.
 
 Run it with ``python quick_start.py``; it writes ``mimo.png``.
 """

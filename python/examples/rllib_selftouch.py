@@ -42,7 +42,7 @@ class Flat(gymnasium.Wrapper[Any, Any, Any, Any]):
         return flat.astype(np.float32)
 
     def reset(self, **options: Any) -> tuple[Floats, dict[str, Any]]:
-        """Begins an episode in which nothing is known."""
+        """Starts an episode without knowledge."""
         observation, info = self.env.reset(**options)
         self._known[:] = observation["touch"] != 0
         return self._flat(observation), info
@@ -76,7 +76,7 @@ class FlatVector(gymnasium.vector.VectorWrapper):
         return flat.astype(np.float32), touched
 
     def reset(self, **options: Any) -> tuple[Floats, dict[str, Any]]:
-        """Begins episodes in which nothing is known."""
+        """Starts episodes without knowledge."""
         observations, _ = self.env.reset(**options)
         flat, self._known = self._flat(observations)
         self._over[:] = False

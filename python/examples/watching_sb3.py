@@ -160,7 +160,7 @@ class Archive:
 
 
 class Sight:
-    """What has changed in the pictures of many infants while each of their wrists moved."""
+    """Changes in the pictures of many infants while each of their wrists moved."""
 
     def __init__(self, body: Body, infants: int, size: int) -> None:
         """Makes room."""
@@ -277,7 +277,7 @@ class Regards:
     """Adds up how long hands were in view, by the counters that ``babybench score`` reads."""
 
     def __init__(self) -> None:
-        """Begins at zero."""
+        """Starts at zero."""
         self.counts, self.steps = 0, 0
 
     def add(self, info: dict[str, Any]) -> None:

@@ -62,7 +62,7 @@ def check(formats: list[str]) -> None:
     """Checks that formats exist and that their libraries are there, before anything is written.
 
     Raises:
-        ValueError: There is no such format.
+        ValueError: The format does not exist.
         ModuleNotFoundError: A library is not installed.
     """
     for name in formats:
@@ -75,7 +75,7 @@ def export(record: Record, formats: list[str], out: Path) -> dict[str, Path]:
     """Writes a record in formats into a folder; returns where each is.
 
     Raises:
-        ValueError: There is no such format; the record has no episodes.
+        ValueError: The format does not exist, or the record has no episodes.
         ModuleNotFoundError: A library is not installed; nothing is written then.
         FileExistsError: A file that would be written is there already; nothing is written then.
     """

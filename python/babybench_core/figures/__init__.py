@@ -40,7 +40,7 @@ def save(figure: Figure, path: Union[str, Path], formats: Sequence[str] = ("svg"
         formats: ``svg``, ``pdf`` or ``png``.
 
     Raises:
-        ValueError: There is no such format.
+        ValueError: The format does not exist.
     """
     for name in formats:
         if name not in FORMATS:

@@ -1,4 +1,4 @@
-"""How long each touch sensor felt something, of whatever touched it or of the own body alone."""
+"""Times in which touch sensors felt something, from any contact or from the own body alone."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ def shares(record: Record, what: str) -> npt.NDArray[np.float64]:
 
 
 class _Poses:
-    """Where bodies are at positions of a scene."""
+    """Poses of bodies at positions of a scene."""
 
     def __init__(self, record: Record) -> None:
         from babybench_core import _native
@@ -65,7 +65,7 @@ class _Poses:
 def _own(
     episode: Episode, poses: _Poses, step: npt.NDArray[np.intp], sensor: npt.NDArray[np.intp]
 ) -> npt.NDArray[np.bool_]:
-    """Tells of each touch of a sensor whether the own body is what touches there."""
+    """Returns for each touch of a sensor whether the own body touches it."""
     skin, geoms = episode.record.skin(), episode.manifest["geoms"]
     own = np.array([geom["region"] is not None for geom in geoms])
     pairs = episode["contact_geom"].astype(int)

@@ -64,7 +64,7 @@ def read(path: Union[str, Path]) -> list[dict[str, Any]]:
 
 
 def default_metric(record: dict[str, Any]) -> str:
-    """Returns what is shown of a log if nothing is asked for."""
+    """Returns the default metric of a log."""
     return "return" if "return" in record else "score"
 
 
@@ -72,7 +72,7 @@ def curve(records: list[dict[str, Any]], metric: str) -> tuple[Floats, Floats]:
     """Returns numbers of steps, and the metric after them.
 
     Raises:
-        ValueError: There is no such metric, or the log does not have it.
+        ValueError: The metric does not exist, or the log does not have it.
     """
     if metric not in METRICS:
         raise ValueError(f"there is no metric {metric!r}; there are {', '.join(METRICS)}")

@@ -47,7 +47,7 @@ def hand_touches(episode: Episode, side: str) -> dict[str, npt.NDArray[np.bool_]
 def touch_raster(episode: Episode, *, start: float = 0.0, end: Optional[float] = None) -> Figure:
     """Draws when each hand touches which region of the body: a line for each region and hand, a bar for each touch.
 
-    A touch goes on across gaps of less than 0.1 s; beside it stands the share of the steps with contact.
+    A touch continues across gaps of less than 0.1 s. The share of the steps with contact is beside it.
 
     Args:
         episode: An episode of a record.
@@ -101,7 +101,7 @@ def _whose(region: str) -> tuple[str, ...]:
 
 
 def _runs(felt: npt.NDArray[np.bool_], time: npt.NDArray[Any], dt: float) -> list[tuple[float, float]]:
-    """Returns begin and length of each touch, s."""
+    """Returns start and length of each touch, s."""
     edges = np.flatnonzero(np.diff(np.concatenate([[False], felt, [False]]).astype(np.int8)))
     begins, ends = edges[::2], edges[1::2]
     apart = (begins[1:] - ends[:-1]) * dt >= _GAP

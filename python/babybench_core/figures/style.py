@@ -1,4 +1,4 @@
-"""How figures look: small type, few lines, colours that everybody can tell apart."""
+"""The style of figures: small type, few lines, colours that everyone can distinguish."""
 
 from __future__ import annotations
 

@@ -45,7 +45,7 @@ class MjData(Named):
     model: MjModel
 
     def __init__(self, model: MjModel) -> None:
-        """Makes a state at the positions ``qpos0``, at rest, of which nothing is computed."""
+        """Creates a state at the positions ``qpos0``, at rest, without computed quantities."""
         if not isinstance(model, MjModel):
             raise TypeError(
                 f"MjData needs an MjModel of babybench.mujoco, not {type(model).__module__}.{type(model).__name__}"

@@ -290,7 +290,7 @@ class mjtStage(enum.IntEnum):
 
 
 class mjtTrn(enum.IntEnum):
-    """What actuators act on."""
+    """The targets of actuators."""
 
     mjTRN_JOINT = 0
     mjTRN_JOINTINPARENT = 1
@@ -331,7 +331,7 @@ class mjtBias(enum.IntEnum):
 
 
 class mjtWrap(enum.IntEnum):
-    """What tendons run along."""
+    """The path elements of tendons."""
 
     mjWRAP_NONE = 0
     mjWRAP_JOINT = 1
@@ -453,7 +453,7 @@ class mjtFontScale(enum.IntEnum):
 
 
 class mjtFramebuffer(enum.IntEnum):
-    """Where pictures are drawn."""
+    """The targets of pictures."""
 
     mjFB_WINDOW = 0
     mjFB_OFFSCREEN = 1
@@ -473,7 +473,7 @@ class mjtGridPos(enum.IntEnum):
 
 
 class mjtMouse(enum.IntEnum):
-    """What a mouse does."""
+    """The actions of a mouse."""
 
     mjMOUSE_NONE = 0
     mjMOUSE_ROTATE_V = 1

@@ -95,7 +95,7 @@ def mj_name2id(m: MjModel, type: int, name: str) -> int:
 
 
 def _anew(d: MjData) -> None:
-    """Takes note that a step that :func:`mj_step1` began will not go on."""
+    """Records that a step started by :func:`mj_step1` will not continue."""
     d.__dict__["_start"] = None
 
 
@@ -104,7 +104,7 @@ def mj_step(m: MjModel, d: MjData, nstep: int = 1) -> None:
 
     Raises:
         ValueError: A number in the arrays is not finite.
-        RuntimeError: The simulation diverged, where MuJoCo would warn and start anew.
+        RuntimeError: The simulation diverged; MuJoCo would warn and restart.
     """
     check(m, d)
     _anew(d)
@@ -213,17 +213,17 @@ def mj_rnePostConstraint(m: MjModel, d: MjData) -> None:
 
 
 def mj_resetData(m: MjModel, d: MjData) -> None:
-    """Starts anew at ``qpos0``, at rest; everything computed becomes zero."""
+    """Resets to ``qpos0``, at rest. Computed quantities become zero."""
     check(m, d)
     _anew(d)
     d._own.reset()
 
 
 def mj_resetDataKeyframe(m: MjModel, d: MjData, key: int) -> None:
-    """Starts anew at a keyframe.
+    """Resets to a keyframe.
 
     Raises:
-        IndexError: There is none of that number, where MuJoCo would say nothing.
+        IndexError: The keyframe does not exist; MuJoCo is silent.
     """
     check(m, d)
     _anew(d)
@@ -261,7 +261,7 @@ def mj_getTotalmass(m: MjModel) -> float:
 
 
 def mj_isPyramidal(m: MjModel) -> int:
-    """Tells whether friction cones are pyramids."""
+    """Returns whether friction cones are pyramidal."""
     return int(m.opt.cone == 0)
 
 

@@ -55,7 +55,7 @@ class OffScreenViewer:
         return np.asarray((1 / near - 1 / distance) / (1 / near - 1 / far), np.float32)
 
     def close(self) -> None:
-        """Does nothing: there is no window and no context."""
+        """Has no effect, because there is no window and no context."""
 
     def __getattr__(self, name: str) -> NoReturn:
         raise AttributeError(
@@ -124,7 +124,7 @@ class MujocoRenderer:
         return self.viewer.render(render_mode, chosen)
 
     def close(self) -> None:
-        """Does nothing: there is no window and no context."""
+        """Has no effect, because there is no window and no context."""
 
 
 def __getattr__(name: str) -> NoReturn:

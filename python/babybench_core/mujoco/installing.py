@@ -19,7 +19,7 @@ def _own() -> dict[str, ModuleType]:
 
 
 def _real(module: ModuleType | None) -> bool:
-    """Tells whether a module is MuJoCo's own, not one that stands in for it."""
+    """Returns whether a module is MuJoCo's own and not a stand-in."""
     return module is not None and not getattr(module, "stands_in", False)
 
 

@@ -57,7 +57,7 @@ _SIZES = (
 
 
 class FixedArray(np.ndarray[Any, np.dtype[Any]]):
-    """An array of a model that cannot be changed, which says so to whoever tries."""
+    """An array of a model that cannot be changed. Writing to it raises an error that explains this."""
 
     _name: str
 
@@ -193,7 +193,7 @@ class MjModel(Named):
 
         Args:
             filename: Path of the document.
-            assets: Contents of files by name, in place of those of the file system.
+            assets: Contents of files by name, which replace those of the file system.
 
         Raises:
             ValueError: The document cannot be read, or has something that the engine does not know, with the place.
@@ -216,7 +216,7 @@ class MjModel(Named):
 
         Args:
             xml: The text.
-            assets: Contents of files by name, in place of those of the file system. Folders and case do not matter in the names.
+            assets: Contents of files by name, which replace those of the file system. Folders and case of names are ignored.
 
         Raises:
             ValueError: As :meth:`from_xml_path`; or two assets of one name.

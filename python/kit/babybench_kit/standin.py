@@ -21,7 +21,7 @@ MUJOCO = "BABYBENCH_MUJOCO"
 
 
 def real(name: str) -> ModuleSpec | None:
-    """Finds the real package of a name: a folder, as stand-ins are files."""
+    """Finds the real package of a name, which is a folder; stand-ins are files."""
     for entry in sys.path:
         spec = PathFinder.find_spec(name, [entry])
         if spec is not None and spec.origin is not None and spec.submodule_search_locations is not None:
