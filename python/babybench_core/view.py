@@ -79,7 +79,7 @@ class View:
     def show(self) -> bool:
         """Shows the environment after the program's step, and returns when it is time for the next.
 
-        While no page is open it returns immediately: a closed, hidden or paused page does not hold the program.
+        While no page is open it returns immediately: a closed or hidden page does not hold the program, even if it is paused.
 
         Returns:
             Whether a new episode was requested (the button "Start again").

@@ -7,7 +7,7 @@ import { FreedError } from "./errors.js";
 import { guarded, memory } from "./module.js";
 import { yamlOf } from "./yaml.js";
 
-/** What all environments of one configuration share: environments from it are cheap. */
+/** Everything that environments of one configuration share, so that further ones are cheap. */
 export class Blueprint {
   /** @type {CoreBlueprint | undefined} */
   #core;
@@ -16,7 +16,7 @@ export class Blueprint {
    * Builds the scene.
    * @param {import("./types.js").Settings | string} [config] values by key, or the text of a YAML file
    * @param {string} [name] of the file, for errors
-   * @param {import("./types.js").Assets} [assets] files by path, among which a scene of one's own and its textures are looked for
+   * @param {import("./types.js").Assets} [assets] files by path, with a custom scene and its textures
    */
   constructor(config = {}, name = "configuration", assets = {}) {
     const [yaml, file, { paths, contents }] = [yamlOf(config), text("name", name), files("assets", assets)];

@@ -12,7 +12,7 @@ export const PROPERTIES = /** @type {const} */ ([
 /** @typedef {typeof METHODS[number] | typeof PROPERTIES[number]} Asked */
 /** @typedef {import("./env.js").Env} Env */
 /**
- * What is asked with: the arguments of a method, nothing for a property.
+ * The arguments of a call: those of a method, none for a property.
  * @template {Asked} K
  * @typedef {Env[K] extends (...args: infer A) => unknown ? A : []} Arguments
  */

@@ -1,4 +1,4 @@
-// Arguments are checked before they reach the module, which would take `1.5` for 1 and trap at a number in place of a text.
+// Checks of arguments before they reach the module, which would take `1.5` for 1 and trap on a number instead of a text.
 import { ArgumentError } from "./errors.js";
 
 const MOST_SEED = 2n ** 64n - 1n;
@@ -125,7 +125,7 @@ export function numbers(name, value, length) {
 }
 
 /**
- * Says why a view of the module's memory has become empty, where it has.
+ * Explains why a view of the module's memory has become empty, if it has.
  * @param {ArrayLike<number>} value
  */
 function emptied(value) {
@@ -148,7 +148,7 @@ export function rows(name, value) {
 }
 
 /**
- * Reads a camera that is anywhere: the point it looks at, distance, azimuth and elevation.
+ * Reads a free camera: the point it looks at, distance, azimuth and elevation.
  * @param {string} name
  * @param {unknown} value
  * @returns {Float64Array}

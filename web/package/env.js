@@ -12,8 +12,8 @@ import { guarded, memory } from "./module.js";
 const KINDS = /** @type {const} */ ({ 1: Uint8Array, 4: Float32Array, 5: Int32Array, 8: Float64Array });
 
 /**
- * An environment. Numbers are views on the module's memory, without copies: they change with the next step, and one that is kept has
- * length 0 once that memory has grown, as a reset, a first picture or another environment may make it. Read them anew from
+ * An environment. Numbers are views on the module's memory, without copies: they change with the next step, and a view that
+ * you keep has length 0 once that memory has grown, for example by a reset, a first picture or another environment. Read them anew from
  * {@link Env.observation}, {@link Env.action} or {@link Env.view}, or copy them with `slice()`.
  *
  * ```js
@@ -43,7 +43,7 @@ export class Env {
    * Builds the scene of a configuration, or makes one more environment of a blueprint.
    * @param {import("./types.js").Settings | string | Blueprint} [config] values by key, or the text of a YAML file
    * @param {string} [name] of the file, for errors
-   * @param {import("./types.js").Assets} [assets] files by path, among which a scene of one's own and its textures are looked for
+   * @param {import("./types.js").Assets} [assets] files by path, with a custom scene and its textures
    */
   constructor(config = {}, name, assets) {
     const shared = config instanceof Blueprint;
@@ -52,7 +52,7 @@ export class Env {
     this.#core = core;
     this.#config = blueprint.config;
     this.#yaml = blueprint.yaml;
-    // after a trap nothing can be freed; what was refused is freed when nobody holds it
+    // after a trap nothing can be freed; refused objects are freed by the garbage collector
     if (!shared) blueprint.free();
     const env = this;
     const names = guarded(() => core.observationNames());
@@ -177,7 +177,7 @@ export class Env {
     this.#call((core) => core.seedActionSpace(from));
   }
 
-  /** What MIMo senses since the last reset or step. Its views are made when they are read, so that they are always valid. */
+  /** The observation of the last reset or step. Its views are created when read, so they are always valid. */
   get observation() {
     return this.#observation;
   }
@@ -209,7 +209,7 @@ export class Env {
     return new KINDS[/** @type {1 | 4 | 5 | 8} */ (kind)](buffer, at, length);
   }
 
-  /** What the last step reports. */
+  /** The information of the last step. */
   get info() {
     return /** @type {import("./types.js").Info} */ (this.#call((core) => core.info()));
   }
@@ -252,7 +252,7 @@ export class Env {
     return new Uint8Array(memory(), place[1], place[2]).slice();
   }
 
-  /** Where the touch sensors are: three numbers each in the frame of their body, m; the body; values for each sensor. */
+  /** The touch sensors: position, three numbers each in the frame of their body, m; the body; values for each sensor. */
   get skin() {
     return this.#call((core) => ({ positions: core.skinPositions(), bodies: core.skinBodies(), width: core.touchWidth() }));
   }
@@ -300,8 +300,7 @@ export class Env {
   }
 
   /**
-   * Lets MIMo make another face, at any moment: pictures change, and nothing else. All but the default one are fetched by {@link loadFace}
-   * first.
+   * Changes MIMo's face at any time. Only pictures change. Fetch all but the default one with {@link loadFace} first.
    * @param {string} expression such as `happy`
    */
   swapFacialExpression(expression) {
@@ -327,12 +326,12 @@ export class Env {
     return [[width, height], [right[0], right[1]]];
   }
 
-  /** How many steps pass until the observation has what the eyes see. */
+  /** The delay of vision, in steps. */
   get visionDelay() {
     return this.#call((core) => core.visionDelay());
   }
 
-  /** Takes a snapshot: all that decides how the run goes on, random numbers, locks and applied forces included. */
+  /** Takes a snapshot: everything that decides how the run continues, including random numbers, locks and applied forces. */
   snapshot() {
     return this.#call((core) => core.snapshot());
   }
@@ -385,7 +384,7 @@ export class Env {
   }
 
   /**
-   * Sets whether resets and steps leave the eyes' pictures as they are, for {@link Env.drawEyes} to draw.
+   * Sets whether resets and steps leave the eyes' pictures to {@link Env.drawEyes}.
    * @param {boolean} deferred
    */
   deferVision(deferred) {
@@ -394,8 +393,8 @@ export class Env {
   }
 
   /**
-   * Draws what both eyes see at this moment, with the acuity and the foveation of the configuration, and leaves the observation, to which
-   * noise and delay belong, as it is. Returns a view of the left and then the right picture, of the sizes {@link Env.eyeSizes}, as
+   * Draws the current view of both eyes, with the acuity and the foveation of the configuration. The observation, with its
+   * noise and delay, does not change. Returns a view of the left and then the right picture, of the sizes {@link Env.eyeSizes}, as
    * {@link Env.draw} does.
    */
   lookThroughEyes() {

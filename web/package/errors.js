@@ -1,4 +1,4 @@
-// Errors beyond those that the library tells by name.
+// Errors beyond the library's own.
 
 /** The module stopped for good: it ran out of memory, or met a fault of its own. Nothing in it can be used any more. */
 export class ModuleError extends Error {
@@ -47,8 +47,8 @@ export class MissingError extends Error {
 /** @typedef {<T>(call: () => T) => T} Guard */
 
 /**
- * Makes the guard of a module: it runs calls into it, and a trap becomes a {@link ModuleError}. After one, no call reaches the module:
- * what it was doing is half done.
+ * Creates the guard of a module, which runs calls into it and turns a trap into a {@link ModuleError}. After a trap no call
+ * reaches the module, because its state is incomplete.
  * @returns {Guard}
  */
 export function guard() {

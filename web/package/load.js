@@ -1,4 +1,4 @@
-// How a module of WebAssembly is found and started, in browsers and in node.
+// Finds and starts a WebAssembly module, in browsers and in Node.
 import { refuse } from "./check.js";
 
 /** @typedef {string | URL | Request | Response | BufferSource | WebAssembly.Module} Source */

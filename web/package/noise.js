@@ -1,5 +1,5 @@
 /// <reference lib="esnext.disposable" preserve="true" />
-// Movements without a purpose, by which infants babble and learners explore.
+// Random movements, with which infants babble and learners explore.
 import { refuse, seed as seedOf, text } from "./check.js";
 import { ActionNoise as CoreNoise } from "./core.js";
 import { Env } from "./env.js";
@@ -44,7 +44,7 @@ export class ActionNoise {
   }
 
   /**
-   * Begins anew.
+   * Restarts.
    * @param {number | bigint} [seed]
    */
   reset(seed = 0) {

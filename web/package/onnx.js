@@ -1,5 +1,5 @@
 /// <reference lib="esnext.disposable" preserve="true" />
-// ONNX policies, in a module of its own that is loaded when it is wanted.
+// ONNX policies, in a module of their own that is loaded on demand.
 import start, { Model } from "./onnx_core.js";
 import { bytes as bytesOf, refuse, text } from "./check.js";
 import { Env } from "./env.js";
@@ -22,8 +22,8 @@ const init = once(async (source) => {
 export default init;
 
 /**
- * A policy that is an ONNX model. Its inputs are named after what it observes (`observation`, `touch`, `vestibular`, `eye_left`,
- * `eye_left_depth`, ...: the keys of {@link Env.observationSpace}), or it has a single one for all of that; its output is the action.
+ * A policy that is an ONNX model. Its inputs are named after entries of the observation (`observation`, `touch`, `vestibular`, `eye_left`,
+ * `eye_left_depth`, ...: the keys of {@link Env.observationSpace}), or a single input takes all of them. Its output is the action.
  *
  * ```js
  * import init, { OnnxPolicy } from "babybench/onnx";
@@ -53,7 +53,7 @@ export class OnnxPolicy {
     const bounds = (/** @type {"low" | "high"} */ side) => Float32Array.from(actions, (a) => a[side]);
     const model = guarded(() => new Model(bytes, name, bounds("low"), bounds("high")));
     const spaces = env.observationSpace;
-    // what was refused is freed when nobody holds it
+    // refused objects are freed by the garbage collector
     guarded(() => {
       for (const { name, shape } of spaces) model.sense(name, Uint32Array.from(shape));
       model.connect();

@@ -1,4 +1,4 @@
-// Environments in a worker: the same calls as of `Env`, each of which returns a promise.
+// Environments in a worker, with the calls of `Env`, each of which returns a promise.
 import { files, refuse, text } from "./check.js";
 import { MissingError } from "./errors.js";
 import { yamlOf } from "./yaml.js";
@@ -65,7 +65,7 @@ export class Connection {
    * Makes an environment.
    * @param {import("./types.js").Settings | string} [config] values by key, or the text of a YAML file
    * @param {string} [name] of the file, for errors
-   * @param {import("./types.js").Assets} [assets] files by path, among which a scene of one's own and its textures are looked for
+   * @param {import("./types.js").Assets} [assets] files by path, with a custom scene and its textures
    */
   async create(config = {}, name = "configuration", assets = {}) {
     files("assets", assets); // refused here, where the call is

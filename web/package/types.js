@@ -1,4 +1,4 @@
-// The types of what goes in and comes out.
+// The types of arguments and results.
 
 /** @typedef {Record<string, string | number | boolean | string[] | null | undefined>} Settings values of a configuration by key; null for none */
 /** @typedef {Record<string, string | Uint8Array>} Assets files by path, as `rooms/mine.xml`; a text is UTF-8 */

@@ -2,7 +2,7 @@
 import { refuse } from "./check.js";
 
 /**
- * Writes values by key as YAML, one line each; a text stays as it is.
+ * Writes values by key as YAML, one line each. A text is returned unchanged.
  * @param {import("./types.js").Settings | string} config
  * @returns {string}
  */
@@ -29,7 +29,7 @@ function written(key, value) {
 }
 
 /**
- * Writes a value. Words stay plain, as choices are; what could be read as something else goes into quotes.
+ * Writes a value. Words stay plain; text that could be read as another value is quoted.
  * @param {unknown} value
  */
 function scalar(value) {

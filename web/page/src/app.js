@@ -1,4 +1,4 @@
-// The page: one world, one stage, one state; the panels look at it and ask it to change.
+// The page: one world, one stage, one state; the panels read it and request changes.
 import { STATES } from "./announce.js";
 import { BEHAVIORS } from "./names.js";
 import { Recordings } from "./recordings.js";
@@ -15,7 +15,7 @@ import { World, WorldError } from "./world.js";
 /** @typedef {{ name: string, bytes: Uint8Array<ArrayBuffer>, url: string | null }} Network */
 /** @typedef {"scene" | "tick" | "state" | "play" | "notice" | "over" | "eyes" | "second eyes" | "tape" | "pull"} Event */
 
-/** Milliseconds between looks at numbers: faster than one reads. */
+/** Milliseconds between updates of numbers, faster than one reads. */
 const TICK = 100;
 
 export class App {
@@ -34,18 +34,18 @@ export class App {
     /** @type {Moment | null} */
     this.moment = null;
     this.frame = new Float32Array(0);
-    /** Whether time passes. */
+    /** Whether time runs. */
     this.playing = false;
     /** The network that was brought. */
     /** @type {Network | null} */
     this.model = null;
-    /** The room of one's own that was brought. */
+    /** The user's own room, if any. */
     /** @type {import("./room.js").Room | null} */
     this.room = null;
     /** Asks a question with two answers. */
     /** @type {(text: string, yes: string, no: string) => Promise<boolean>} */
     this.confirm = async () => true;
-    /** Whether something is pulled. */
+    /** Whether a body is pulled. */
     this.held = false;
     /** @type {Map<Event, Set<(data: any) => void>>} */
     this.listeners = new Map();
@@ -63,7 +63,7 @@ export class App {
     this.world = this.connect(worker);
   }
 
-  /** The settings as they will be when everything that was asked for is built. */
+  /** The settings after all requested changes are built. */
   get settings() {
     return /** @type {Settings} */ (Object.assign({}, this.state.settings, ...this.asked));
   }
@@ -106,12 +106,12 @@ export class App {
   }
 
   /**
-   * Announces a state: the only way that one is told.
+   * Announces a state. All states are announced here.
    * @param {keyof typeof STATES} name
    * @param {unknown} [data]
    */
   announce(name, data) {
-    // time stands in these, and the button must not say that it passes
+    // time is paused in these, and the button must show it
     if (name === "stopped" || name === "lost" || name === "hung") this.setPlaying(false);
     this.emit("notice", { name, ...STATES[name](this, data) });
   }
@@ -157,7 +157,7 @@ export class App {
 
   /** Starts the worker's world for the first time, from the link if it holds a state. */
   async start() {
-    // not waited for: the page has graphics to prepare, and the worker goes on by itself
+    // not awaited: the page has graphics to prepare, and the worker continues on its own
     this.world.ask("load").then(() => performance.mark("module"), () => {});
     return this.sharing.start();
   }
@@ -226,7 +226,7 @@ export class App {
   }
 
   /**
-   * Puts a second MIMo beside the first, or takes him away. Both begin anew, from the same seed.
+   * Adds a second MIMo beside the first, or removes him. Both restart from the same seed.
    * @param {import("./types").Twin | null} twin
    */
   async compare(twin) {
@@ -237,7 +237,7 @@ export class App {
   }
 
   /**
-   * Makes a room of one's own the scene, with the configuration that lies beside it, if one does.
+   * Loads the user's own room as the scene, with the configuration beside it, if there is one.
    * @param {import("./room.js").Room} room
    */
   async enter(room) {
@@ -258,7 +258,7 @@ export class App {
   }
 
   /**
-   * Changes some settings and builds anew; errors of the library are thrown.
+   * Changes some settings and rebuilds the world. Errors of the library are thrown.
    * @param {Settings} change
    */
   async change(change) {
@@ -313,7 +313,7 @@ export class App {
   }
 
   /**
-   * Lets time pass, or stand. An episode that is over goes on with the next one.
+   * Starts or pauses time. After the end of an episode the next one starts.
    * @param {boolean} on
    * @returns {Promise<void> | void}
    */
@@ -326,7 +326,7 @@ export class App {
   }
 
   /**
-   * Goes to a moment of the past, or of the recording that plays; time stands there, and goes on with the same bits.
+   * Goes to a moment of the past, or of the recording that plays; time pauses there, and continues with the same bits.
    * @param {number} step of the moment's `line`
    */
   async seek(step) {
@@ -383,7 +383,7 @@ export class App {
   }
 
   /**
-   * Lets MIMo make a face, and him beside him; time goes on.
+   * Changes the face of MIMo and of the second MIMo. Time continues.
    * @param {string} name
    */
   async face(name) {

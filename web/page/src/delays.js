@@ -1,4 +1,4 @@
-// How late MIMo senses and acts, in milliseconds.
+// Delays of MIMo's senses and actions, in milliseconds.
 
 /** @typedef {import("./types").Settings} Settings */
 

@@ -19,7 +19,7 @@ import { kept } from "./storage.js";
 import { World } from "./world.js";
 import { el } from "./dom.js";
 
-/** Milliseconds between looks through MIMo's eyes. */
+/** Milliseconds between pictures of MIMo's eyes. */
 const GLANCE = 100;
 
 function stageOrExplain() {
@@ -56,7 +56,7 @@ function theme(stage) {
 }
 
 /**
- * Says on the scene what one can do with MIMo, until somebody has done it once.
+ * Shows a hint on the scene until the user has pulled MIMo once.
  * @param {App} app
  */
 function hint(app) {
@@ -99,7 +99,7 @@ function legend(app) {
 }
 
 /**
- * Asks for what the eyes see, as often as one can follow, while somebody looks.
+ * Requests pictures of the eyes, as often as one can follow, while the page is visible.
  * @param {App} app
  */
 function glances(app) {

@@ -20,7 +20,7 @@ export class Second {
     /** @type {Scene | null} */
     this.scene = null;
     this.shown = 0;
-    /** What each of the two is, on his picture; and his score. */
+    /** A caption for each of the two on his picture, and his score. */
     this.scores = [el("b"), el("b")];
     this.labels = this.scores.map(() => el("p", { className: "who glass" }));
     let behind = 0;
@@ -94,7 +94,7 @@ export class Second {
     say(this.scores[which], earned !== null ? `return ${earned.toFixed(1)}` : value !== null ? `${(100 * value).toFixed(1)} %` : "");
   }
 
-  /** Says on each picture who it is. */
+  /** Shows on each picture who it is. */
   name() {
     const { app, scene } = this;
     const { twin, policy } = app.state;

@@ -19,7 +19,7 @@ export class Sharing {
   /** @param {import("./app.js").App} app */
   constructor(app) {
     this.app = app;
-    /** What the link in the address bar says, if there is one. */
+    /** The contents of the link in the address bar, if there is one. */
     /** @type {string | null} */
     this.linked = null;
     this.opening = false;
@@ -41,7 +41,7 @@ export class Sharing {
     return { ...state, settings: scene ? scene.changed : state.settings, view: stage.orbit.view, network };
   }
 
-  /** The files of the room that MIMo is in, if it is one's own. */
+  /** The files of MIMo's room, if it is the user's own. */
   get room() {
     const { room, state } = this.app;
     return sceneOf(state.settings) === null || !room ? null : room.files;

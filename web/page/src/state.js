@@ -9,7 +9,7 @@ export const SPEEDS = [0.1, 0.25, 0.5, 1, 2, 4, 16];
 const POLICIES = ["babbling", "random", "sine", "zero", "model"];
 export const MOST_SEED = 2 ** 32 - 1;
 
-/** What a first visitor sees: an infant in its cot, all senses on. */
+/** The state for a first visitor: an infant in the crib, all senses on. */
 /** @type {PageState} */
 export const FIRST = {
   settings: { behavior: "self_touch", scene: "crib", vision_active: false, max_episode_steps: 12_000 },

@@ -106,7 +106,7 @@ export class World {
   }
 
   /**
-   * Tells the worker; what goes wrong comes as an event.
+   * Sends a message to the worker. Errors arrive as an event.
    * @param {string} name
    * @param {...unknown} args
    */

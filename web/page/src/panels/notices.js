@@ -62,7 +62,7 @@ export function hideVeil() {
 }
 
 /**
- * Replaces the page by a message: nothing can go on.
+ * Replaces the page by a message when it cannot continue.
  * @param {string} title
  * @param {string} text
  */

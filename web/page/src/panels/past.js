@@ -23,7 +23,7 @@ export function where({ line }, seconds, at = line.at) {
 /** @param {import("../app.js").App} app */
 export function past(app) {
   const line = /** @type {HTMLInputElement} */ ($("past"));
-  /** Where somebody wants time to be, while it is on its way. */
+  /** The requested moment, while time moves there. */
   /** @type {number | null} */
   let goal = null;
   let asked = 0;

@@ -1,10 +1,10 @@
 // The renderer that draws here: a graphics card, or the processor in its place.
 
-/** What renderers call themselves that compute on the processor. */
+/** Names of renderers that run on the processor. */
 const SOFTWARE = /swiftshader|llvmpipe|softpipe|software|basic render/i;
 
 /**
- * Tells whether WebGL is computed on the processor, where shadows and smooth edges take longer than all the rest.
+ * Returns whether WebGL runs on the processor, where shadows and smooth edges take longer than everything else.
  * @returns {boolean}
  */
 export function drawnInSoftware() {

@@ -71,7 +71,7 @@ export class Orbit {
     this.offset.clampLength(0, 4);
   }
 
-  /** Puts the camera where the angles say. */
+  /** Moves the camera to the angles. */
   update() {
     const { camera, distance, azimuth, elevation } = this;
     const centre = this.at.clone().add(this.offset);

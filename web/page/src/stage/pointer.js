@@ -1,4 +1,4 @@
-// Pointers and keys on the scene: a body under the pointer is pulled, everything else turns the camera.
+// Pointers and keys on the scene: they pull a body under the pointer, and otherwise turn the camera.
 import { Plane, Raycaster, Vector2, Vector3 } from "three";
 import { toBody } from "./skin.js";
 

@@ -64,7 +64,7 @@ export class Stage {
     this.peer = null;
     this.agreed = { view: "" };
     this.followed = new Vector3();
-    /** How far away the camera looks, m. */
+    /** Distance of the camera, m. */
     this.focus = { value: 2 };
     this.shared = { rim: this.studio.rim, focus: this.focus };
     /** Whether everything of the scene is in its place; before, nothing is drawn. */

@@ -95,7 +95,7 @@ export class PageEnv {
     this.steps = 0;
   }
 
-  /** Where a recording starts. */
+  /** The start of a recording. */
   start() {
     return { qpos0: this.state("qpos").slice(), qvel0: this.state("qvel").slice(), activity0: this.state("act").slice() };
   }
@@ -238,7 +238,7 @@ export class PageEnv {
     return this.env.checksum();
   }
 
-  /** What the page learns once. */
+  /** The data that the page gets once. */
   scene() {
     const locked = this.locked();
     const defaults = new Map(PageEnv.keys().map((k) => [k.name, k.default]));

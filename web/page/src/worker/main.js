@@ -158,7 +158,7 @@ const answers = {
   reset: (/** @type {number} */ seed) => world().reset(seed),
   move: (/** @type {Movement} */ m) => world().move(m),
   strength: (/** @type {number} */ v) => [world(), world().twin].forEach((w) => w && (w.spring.strength = v)),
-  /** Goes to a moment of the past; time stands there. */
+  /** Goes to a moment of the past, where time pauses. */
   seek(/** @type {number} */ step) {
     wanted = false;
     return world().seek(step);

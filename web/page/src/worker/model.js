@@ -1,4 +1,4 @@
-// A trained network as a policy. Its module is large and is loaded when one is first wanted.
+// A trained network as a policy. Its module is large and is loaded on first use.
 
 /** @typedef {import("./env.js").PageEnv} PageEnv */
 

@@ -50,7 +50,7 @@ export class Past {
     return Math.max(this.stretches[0]?.start ?? this.at, this.recording ? 0 : this.last - this.kept);
   }
 
-  /** Whether what comes next is known. */
+  /** Whether the next step is known. */
   get known() {
     return this.at < this.last;
   }
@@ -104,7 +104,7 @@ export class Past {
     while (this.stretches.length > 1 && this.stretches[1].start <= this.last - this.kept) this.stretches.shift();
   }
 
-  /** Forgets what comes next, as something else is done. What a recording holds stays. */
+  /** Clears the known future, because something else happens. A recording's steps remain. */
   forget() {
     if (!this.known || this.recording) return;
     this.changed = this.cut(this.at) !== null;

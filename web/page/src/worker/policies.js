@@ -1,4 +1,4 @@
-// Policies that move MIMo when nobody holds a slider: functions of the step, so that a link needs no more than a seed.
+// Policies that move MIMo while no slider is held. They are functions of the step, so a link needs only a seed.
 
 /** @typedef {{ low: number, high: number }} Range */
 /** @typedef {(step: number, ranges: Range[], out: Float32Array) => void} Policy */
@@ -22,7 +22,7 @@ export function noise(seed, which, when) {
 }
 
 /**
- * Puts a value of [-1, 1] into a range. Muscles only pull: their range starts at rest.
+ * Maps a value of [-1, 1] to a range. Muscles only pull: their range starts at rest.
  * @param {Range} range
  * @param {number} v
  */

@@ -4,7 +4,7 @@
 
 export class Spring {
   constructor() {
-    /** How fast the pulled body would swing, rad/s: stiffness is its square times the mass that the point feels. */
+    /** The angular frequency of the pulled body, rad/s: stiffness is its square times the mass that the point feels. */
     this.strength = 12;
     /** @type {{ body: number, point: [number, number, number], target: [number, number, number] } | null} */
     this.held = null;

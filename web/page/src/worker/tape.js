@@ -1,4 +1,4 @@
-// Recordings: the actions of a run and where it started; and their replay.
+// Recordings, the actions of a run and its start, and their replay.
 
 /** Longest recording, numbers: 64 MB. */
 const MOST = 16 << 20;

@@ -1,4 +1,4 @@
-// The world: an environment of the package, what the page wants of it, and a frame of it.
+// The world: an environment of the package, the page's requests, and its frames.
 import { CONTACT, CONTACTS, layoutOf } from "../frame.js";
 import { BUDGET, Clock } from "./clock.js";
 import { Past } from "./past.js";
@@ -48,7 +48,7 @@ export class LiveWorld {
     this.scored = 0;
     this.score = env.score();
     this.truncated = false;
-    /** Whether a task has ended: it goes on with its next episode only. */
+    /** Whether a task has ended, so that only its next episode can continue. */
     this.over = false;
     /** The world beside this one, whose time this one's clock is, too. */
     /** @type {LiveWorld | null} */
@@ -129,7 +129,7 @@ export class LiveWorld {
   }
 
   /**
-   * Does what the policy, the sliders and the pointer want.
+   * Applies the policy, the sliders and the pointer.
    * @param {import("./past.js").Stretch} stretch of the past that the step becomes part of
    */
   live(stretch) {
