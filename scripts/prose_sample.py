@@ -3,8 +3,9 @@
 
     scripts/prose_sample.py [--seed 1] [--lines 200]
 
-Prints a numbered list with the place of each line. The same seed and commit give the same list. The kinds are lines of Markdown,
-summary lines of rustdoc (which are also the help texts of the command line), of docstrings and of JSDoc, and messages of errors.
+Prints a numbered list with the place of each line. The same seed and commit give the same list. The kinds are sentences and
+table rows of Markdown, summary lines of rustdoc (which are also the help texts of the command line), of docstrings and of JSDoc,
+and messages of errors.
 """
 
 from __future__ import annotations
@@ -37,19 +38,31 @@ def files(*endings: str) -> Iterator[tuple[str, str]]:
 
 
 def is_prose(text: str) -> bool:
-    """Returns whether a text has at least three words, so that there is something to judge."""
-    return len(re.findall(r"[A-Za-z]{2,}", text)) >= 3
+    """Returns whether a text has enough words to judge, and more words than numbers."""
+    words, numbers = re.findall(r"[A-Za-z]{2,}", text), re.findall(r"\d+", text)
+    return len(words) >= 4 and len(words) > len(numbers)
 
 
 def markdown() -> Iterator[Line]:
-    """Yields lines of Markdown outside of code blocks."""
+    """Yields the sentences and table rows of Markdown outside of code blocks."""
     for path, text in files(".md"):
-        fenced = False
-        for number, line in enumerate(text.splitlines(), 1):
-            if line.lstrip().startswith("```"):
+        block: list[str] = []
+        start, fenced = 0, False
+        for number, line in enumerate([*text.splitlines(), ""], 1):
+            stripped = line.strip()
+            fence = stripped.startswith("```")
+            starts = not stripped or fence or re.match(r"[-*#|]|\d+\. ", stripped)
+            if block and (starts or fenced):
+                for sentence in re.split(r"(?<=[.:?!]) (?=[A-Z`*\[])", " ".join(block)):
+                    if is_prose(sentence):
+                        yield path, start, sentence
+                block = []
+            if fence:
                 fenced = not fenced
-            elif not fenced and not line.startswith("    ") and is_prose(line):
-                yield path, number, line.strip()
+            elif stripped and not fenced:
+                if not block:
+                    start = number
+                block.append(stripped)
 
 
 def rustdoc() -> Iterator[Line]:
