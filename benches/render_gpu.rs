@@ -16,7 +16,7 @@ use common::seen;
 const ENVIRONMENTS: usize = 64;
 const ROUNDS: usize = 7;
 
-/// Returns the CPU time of all threads of this process, s, where the system tells.
+/// Returns the CPU time of all threads of this process, s, if the system reports it.
 fn cpu_time() -> Option<f64> {
     let stat = std::fs::read_to_string("/proc/self/stat").ok()?;
     let mut fields = stat.rsplit_once(')')?.1.split_whitespace().skip(11);

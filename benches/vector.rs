@@ -179,7 +179,7 @@ const CROWDS: [usize; 3] = [8, 64, 512];
 const COURSES: usize = 7;
 const COURSE: usize = 25;
 
-/// Both do the same work: the course of each environment of the vector is made by one environment, too, one after the other.
+/// Both do the same work: a single environment also makes the steps of each environment of the vector, one after the other.
 fn crowd(name: &str, blueprint: &Blueprint) {
     for n in CROWDS {
         let mut many = vector_of(n, blueprint, 1);
@@ -288,7 +288,7 @@ fn nodes(name: &str, blueprint: &Blueprint) {
     );
 }
 
-/// Eyes that see less often, or that are asked for in every tenth step, against those that see in each.
+/// Eyes with a lower rate, or drawn on request in every tenth step, against those drawn in each step.
 fn rates(name: &str, config: &Config) {
     let rated = Config {
         vision_rate: Some(30.0),

@@ -1,4 +1,4 @@
-//! A task of one's own: MIMo lies on the floor and lifts his right hand to a height of 30 cm or more, another one each time.
+//! A user-defined task: MIMo lies on the floor and lifts his right hand to a height of 30 cm or more, a different one in each episode.
 
 use babybench::env::{BlueprintOptions, Goal, Task, TaskScene, TaskSizes, TaskView, Verdict};
 use babybench::{Blueprint, Config, EnvError, Model};

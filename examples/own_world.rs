@@ -1,4 +1,4 @@
-//! Puts MIMo into a Rapier world of your own, beside bodies that the model does not know: a ball falls on MIMo.
+//! Adds MIMo to a Rapier world of your own, beside bodies that the model does not know: a ball falls on MIMo.
 //!
 //! ```sh
 //! cargo run --release --example own_world

@@ -7,7 +7,7 @@ use babybench::config::{Behavior, Scene};
 use babybench::env::Viewer;
 use babybench::{Config, Env};
 
-/// Rounds of which the least counts.
+/// Rounds, of which the fastest counts.
 const ROUNDS: usize = 5;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {

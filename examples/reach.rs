@@ -1,5 +1,5 @@
-//! Learns to reach with the cross-entropy method: the torques of the arm are a linear function of where it is, how it moves and where
-//! the ball is; functions that bring the fingers to the ball survive. Takes a minute or two on two cores.
+//! Learns to reach with the cross-entropy method: the torques of the arm are a linear function of its position and velocity and of the
+//! ball's position. Functions that bring the fingers to the ball survive. Takes a minute or two on two cores.
 //!
 //! ```sh
 //! cargo run --release --features parallel --example reach

@@ -1,5 +1,5 @@
-//! Prints how many bytes an observation has that travels between machines, as it is and packed: touch as the sensors that feel something
-//! (their numbers and forces), pictures as PNG, which loses nothing. The rest is as it is.
+//! Prints the bytes of an observation that is sent between machines, unpacked and packed: touch as the active sensors (their numbers and
+//! forces), pictures as PNG, which is lossless. The rest is unchanged.
 
 use babybench::config::VisionOutput;
 use babybench::sensors::transform::Sense;

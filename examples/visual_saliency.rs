@@ -1,5 +1,4 @@
-//! Computes the reward of the starter kit's hand-regard example, simplified: how much the middle of an eye's image stands
-//! out.
+//! Computes a simplified reward of the starter kit's hand-regard example: the contrast of the middle of an eye's image.
 //!
 //! ```sh
 //! cargo run --release --example visual_saliency

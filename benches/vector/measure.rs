@@ -24,7 +24,7 @@ pub fn pair(
     };
     let (mut ratios, mut us) = (Vec::new(), [Vec::new(), Vec::new()]);
     for (k, actions) in actions.chunks_exact(steps).enumerate() {
-        // whoever is first changes from pair to pair
+        // the first side changes from pair to pair
         let times = if k % 2 == 0 {
             [time(&mut one, actions), time(&mut other, actions)]
         } else {
@@ -43,7 +43,7 @@ pub fn pair(
     println!("{name:60} {median:.3} times ({low:.3} .. {high:.3}); {one:8.1} and {other:8.1} us per step");
 }
 
-/// Returns how long this thread has run, s, where the system tells, or else what time it is.
+/// Returns the CPU time of this thread, s, if the system reports it, or otherwise the time.
 pub fn cpu_time() -> f64 {
     #[cfg(any(target_os = "linux", target_os = "macos"))]
     return seconds(rustix::time::ClockId::ThreadCPUTime);
@@ -51,7 +51,7 @@ pub fn cpu_time() -> f64 {
     return wall_time();
 }
 
-/// Returns how long all threads of the process have run, s, where the system tells, or else what time it is.
+/// Returns the CPU time of all threads of the process, s, if the system reports it, or otherwise the time.
 pub fn process_time() -> f64 {
     #[cfg(any(target_os = "linux", target_os = "macos"))]
     return seconds(rustix::time::ClockId::ProcessCPUTime);
@@ -73,7 +73,7 @@ pub fn wall_time() -> f64 {
     START.get_or_init(Instant::now).elapsed().as_secs_f64()
 }
 
-/// Returns the resident memory of the process, MB, where the system tells (Linux).
+/// Returns the resident memory of the process, MB, if the system reports it (Linux).
 pub fn resident_memory() -> f64 {
     let text = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
     let line = text.lines().find_map(|l| l.strip_prefix("VmRSS:"));

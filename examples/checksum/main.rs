@@ -66,7 +66,7 @@ fn lines(jobs: &[Job], threads: usize, at_once: usize) -> Result<Vec<String>, Bo
     Ok(lines.into_inner()?.into_iter().collect::<Result<_, _>>()?)
 }
 
-/// Writes the snapshots of all configurations to a folder, or goes on from those that are there.
+/// Writes the snapshots of all configurations to a folder, or continues from existing ones.
 fn exchange(keep: bool, folder: &Path) -> Result<(), Box<dyn std::error::Error>> {
     for job in Job::all(Kind::Snapshot, 0) {
         let path = folder.join(job.case.0);

@@ -7,7 +7,7 @@ use babybench::{Env, VectorEnv, VectorOptions};
 use crate::cases::{Case, blueprint};
 use crate::fold::{self, Hash};
 
-/// A checksum, or why there is none.
+/// A checksum, or the reason for its absence.
 pub type Sum = Result<u64, Box<dyn std::error::Error>>;
 
 /// Runs a case for some random steps from seed 0, with a new episode where one ends, and returns what it folded on the way: rewards, and
@@ -107,7 +107,7 @@ pub fn snapshot(case: Case) -> Result<Vec<u8>, Box<dyn std::error::Error>> {
     Ok(env.snapshot().as_bytes().to_vec())
 }
 
-/// Restores the bytes of a snapshot in a new environment and goes on; returns the bytes and what follows.
+/// Restores the bytes of a snapshot in a new environment and continues. Returns the bytes and what follows.
 pub fn restored(case: Case, bytes: Vec<u8>) -> Sum {
     let mut env = blueprint(case, |config| config)?.env()?;
     let mut hash = Hash::new();

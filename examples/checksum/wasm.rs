@@ -1,4 +1,4 @@
-//! A WebAssembly module without imports: `run.mjs` asks for a line, or puts a snapshot into its memory, and reads what is there.
+//! A WebAssembly module without imports: `run.mjs` requests a line, or writes a snapshot into its memory, and reads the result.
 
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
@@ -9,7 +9,7 @@ mod fold;
 mod jobs;
 mod sums;
 
-/// The text for the caller, and the room in which he writes a snapshot.
+/// The text for the caller, and the buffer in which the caller writes a snapshot.
 static BYTES: Mutex<Vec<u8>> = Mutex::new(Vec::new());
 
 fn bytes() -> MutexGuard<'static, Vec<u8>> {
@@ -22,7 +22,7 @@ fn answer(text: Result<String, String>) -> usize {
     bytes().len()
 }
 
-/// Makes room for a snapshot, and returns where it is; with the length of an answer, where that is.
+/// Allocates a buffer for a snapshot, and returns its address; with the length of an answer, that of the answer.
 #[unsafe(no_mangle)]
 pub extern "C" fn memory_of(length: usize) -> *mut u8 {
     let mut bytes = bytes();

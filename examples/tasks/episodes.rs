@@ -8,12 +8,12 @@ use babybench::{Blueprint, Env, EnvError};
 use crate::linear::Design;
 use crate::plans::Plan;
 
-/// What came of an episode.
+/// The result of an episode.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Outcome {
     /// The sum of rewards.
     pub reward: f64,
-    /// What a candidate is judged by: the sum of rewards, and perhaps how near it came.
+    /// The fitness of a candidate: the sum of rewards, and for some tasks the smallest distance.
     pub worth: f64,
     pub steps: u64,
     pub success: bool,
@@ -43,7 +43,7 @@ impl Arena {
         &mut self.envs[0]
     }
 
-    /// Runs episodes on all threads. What comes of them does not depend on the number of threads.
+    /// Runs episodes on all threads. The results do not depend on the number of threads.
     pub fn run(&mut self, plan: &Plan, episodes: &[Episode<'_>]) -> Result<Vec<Outcome>, EnvError> {
         let (next, done) = (
             AtomicUsize::new(0),

@@ -5,10 +5,10 @@ use babybench::spaces::BoxSpace;
 
 use crate::model::{self, Sense};
 
-/// A number that a policy looks at: a sum of numbers of the observation, each times a factor.
+/// An input of a policy: a weighted sum of numbers of the observation.
 #[derive(Clone, Debug, Default)]
 pub struct Feature {
-    /// What it is where all others are 0.
+    /// Its value when all others are 0.
     pub offset: f64,
     /// Keys of senses, places in them, factors.
     pub parts: Vec<(&'static str, usize, f64)>,
@@ -31,7 +31,7 @@ impl Feature {
     }
 }
 
-/// Which features each number of the action depends on.
+/// The features on which each number of the action depends.
 #[derive(Clone, Debug, Default)]
 pub struct Design {
     pub features: Vec<Feature>,

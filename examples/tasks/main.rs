@@ -65,7 +65,7 @@ impl Arguments {
     }
 }
 
-/// What a generation came to.
+/// The result of a generation.
 struct Record {
     stage: usize,
     steps: u64,
@@ -98,7 +98,7 @@ fn main() -> Result<(), Error> {
     )
 }
 
-/// Trains a stage, and leaves in `weights` what it has learned.
+/// Trains a stage, and stores the learned weights in `weights`.
 fn train(
     arena: &mut Arena,
     plan: &Plan,

@@ -1,4 +1,4 @@
-//! What is learned, and how: for each task the numbers that its policy looks at, and the stages of its training.
+//! Training plans: for each task the inputs of its policy, and the stages of its training.
 
 use babybench::config::Behavior;
 use babybench::sensors::Component;
@@ -20,13 +20,13 @@ pub struct Stage {
     pub spread: f64,
 }
 
-/// A policy that is to be learned.
+/// A policy to be learned.
 pub struct Plan {
     pub design: Design,
-    /// The weights to begin with.
+    /// The initial weights.
     pub start: Vec<f64>,
     pub stages: Vec<Stage>,
-    /// What a metre costs that is missing at the nearest moment of an episode without success.
+    /// The cost per metre of the smallest distance in an episode without success.
     pub shaping: f64,
     fingers: Option<usize>,
 }
@@ -55,7 +55,7 @@ pub fn config(behavior: Behavior, age: Option<f64>) -> Config {
     }
 }
 
-/// Where the numbers of an action and of its joint stand.
+/// Indices of the numbers of an action and of its joint.
 struct Drive {
     action: usize,
     angle: usize,

@@ -1,4 +1,4 @@
-//! What the policies of a folder are worth beside those that learn nothing: a table, and their learning curves.
+//! A report on the policies of a folder beside those that learn nothing: tables and learning curves.
 
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
@@ -14,7 +14,7 @@ use crate::plans::TASKS;
 
 /// Episodes of each policy; their seeds are 0, 1, ... Training has others.
 const EPISODES: u64 = 20;
-/// Size of a panel, and of what lies around its curve: left, top, right, bottom.
+/// Size of a panel, and of the margins of its curve: left, top, right, bottom.
 const PANEL: [f64; 2] = [300.0, 190.0];
 const MARGIN: [f64; 4] = [48.0, 28.0, 14.0, 34.0];
 /// Panels beside each other.

@@ -350,7 +350,7 @@ class Env(gymnasium.Env[Observation, npt.NDArray[Any]]):
         self._core.restore(snapshot)
 
     def swap_facial_expression(self, expression: str) -> None:
-        """Lets MIMo make another face: ``default``, ``happy``, ``sad``, ``surprised``, ``angry``, ``disgusted``, ``scared``.
+        """Changes MIMo's face: ``default``, ``happy``, ``sad``, ``surprised``, ``angry``, ``disgusted``, ``scared``.
 
         Nothing but pictures changes; the next step has the same bits as without.
 

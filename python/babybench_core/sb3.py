@@ -83,7 +83,7 @@ class VecEnv(BaseVecEnv):
     ) -> tuple[dict[str, npt.NDArray[Any]], npt.NDArray[np.float32], npt.NDArray[np.bool_], list[dict[str, Any]]]:
         """Applies the actions and waits for all environments."""
         if self._actions is None:
-            raise RuntimeError("step_wait without step_async: nothing is under way")
+            raise RuntimeError("step_wait without step_async: no step is running")
         observations, rewards, terminated, truncated, infos = self.envs.step(self._actions)
         self._actions = None
         dones = terminated | truncated

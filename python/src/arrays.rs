@@ -106,7 +106,7 @@ pub fn read<T: Element + Copy>(
     let array = array.try_readonly()?;
     out.clear();
     match array.as_slice() {
-        // rust-numpy hands over slices of arrays in Fortran's order, too, whose values stand in another one
+        // rust-numpy also returns slices of arrays in Fortran's order, whose values are in another order
         Ok(values) if array.is_c_contiguous() => out.extend_from_slice(values),
         _ => out.extend(array.as_array().iter().copied()),
     }

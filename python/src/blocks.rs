@@ -13,13 +13,13 @@ use pyo3::types::{PyDict, PyList, PySlice};
 use crate::env::Env;
 use crate::observation::write_touched;
 
-/// Arrays by key on one piece of memory, which serves again when nobody holds any of it.
+/// Arrays by key on one piece of memory, which is reused when none of it is referenced.
 struct Felt {
     moment: i64,
     memory: Py<PyAny>,
     arrays: Py<PyList>,
     dict: Py<PyDict>,
-    /// Counts of references while nobody but this holds anything.
+    /// Reference counts without other references.
     idle: Py<PyList>,
 }
 
@@ -54,7 +54,7 @@ impl Felt {
         })
     }
 
-    /// Tells whether nobody else has the arrays, and nobody has put something else in their place.
+    /// Returns whether there are no other references to the arrays, and none was replaced.
     fn free(&self, py: Python<'_>) -> PyResult<bool> {
         let whole = self.dict.bind(py).len() == self.arrays.bind(py).len();
         Ok(whole && references(py, &self.memory, &self.arrays, &self.dict)?.eq(&self.idle)?)

@@ -14,7 +14,7 @@ use serde::forward_to_deserialize_any;
 
 use crate::errors::{IntoException, detached};
 
-/// A value of a dictionary that can stand in a configuration.
+/// A value of a dictionary for a configuration.
 enum Value {
     None,
     Bool(bool),

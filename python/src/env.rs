@@ -16,7 +16,7 @@ use crate::observation::{Views, fresh, fresh_blind, fresh_images};
 use crate::pictures::{self, Painters};
 use crate::{model_change, state, task, touch};
 
-/// Steps of a run between two looks at whether somebody has pressed Ctrl-C: 3 ms without pictures, 60 ms with both eyes.
+/// Steps of a run between two checks for Ctrl-C: 3 ms without pictures, 60 ms with both eyes.
 pub const UNINTERRUPTED: usize = 64;
 
 /// The contents of a Python environment.
@@ -30,7 +30,7 @@ pub struct Inner {
     /// The other infants in the scene, and what one of them feels.
     others: Vec<OtherInfant>,
     felt: Vec<f64>,
-    /// Whether observations are without images, for those who ask for them.
+    /// Whether observations have no images, which are drawn on request.
     lazy: bool,
 }
 
@@ -46,7 +46,7 @@ impl Env {
         self.inner.guard()
     }
 
-    /// Puts the scene at positions and velocities, and returns the observation.
+    /// Moves the scene to positions and velocities, and returns the observation.
     fn placed<'py>(
         &self,
         py: Python<'py>,
@@ -400,7 +400,7 @@ impl Env {
         let mut guard = self.guard()?;
         let inner = guard.open()?;
         detached(py, || inner.env.swap_facial_expression(face))?;
-        // those so far would go on drawing the old one
+        // the earlier ones would continue to draw the old one
         inner.painters = Painters::default();
         inner.blueprint = Py::new(
             py,
@@ -518,7 +518,7 @@ impl Env {
     }
 }
 
-/// Says that the scene has no such other infant.
+/// Returns the error that the scene has no other infant.
 fn no_other(index: usize) -> PyErr {
     PyIndexError::new_err(format!(
         "the scene has no other infant {index}: see `others` in the guide's chapter on rooms"

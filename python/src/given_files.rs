@@ -1,4 +1,4 @@
-//! Files that a program gives in place of those of the file system.
+//! Files from a program that replace those of the file system.
 
 use std::borrow::Cow;
 use std::collections::HashMap;

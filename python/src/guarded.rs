@@ -1,4 +1,5 @@
-//! A value that one thread at a time uses, until it is closed.
+//! A value for one thread at a time, until it is closed. Other threads get an error immediately: a thread that waited would hold Python's
+//! lock, which the first thread may need.
 
 use std::sync::{Mutex, MutexGuard, TryLockError};
 

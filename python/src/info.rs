@@ -17,7 +17,7 @@ use crate::arrays::shaped;
 /// Key, shape, number type, lower and upper bound.
 pub type Space = (&'static str, Vec<usize>, &'static str, f64, f64);
 
-/// Describes observation spaces, without images if those who want them ask for them.
+/// Describes observation spaces, without images if they are drawn on request.
 pub fn spaces(spaces: &[ObservationSpace], lazy: bool) -> Vec<Space> {
     let describe = |s: &ObservationSpace| (s.key, s.shape.clone(), s.dtype.name(), s.low, s.high);
     spaces.iter().filter(|s| !(lazy && is_image(s))).map(describe).collect()
@@ -28,7 +28,7 @@ pub fn is_image(space: &ObservationSpace) -> bool {
     ObservationEntry::of_key(space.key).is_some_and(|entry| entry.image.is_some())
 }
 
-/// Calls with what is to be locked or unlocked: a joint's number or name, or the name of a part.
+/// Calls a function with the target of a lock: a joint's number or name, or the name of a part.
 pub fn target_of<R>(target: &Bound<'_, PyAny>, call: impl FnOnce(LockTarget<'_>) -> PyResult<R>) -> PyResult<R> {
     if let Ok(joint) = target.extract::<usize>() {
         return call(LockTarget::Joint(joint));

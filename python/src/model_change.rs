@@ -27,7 +27,7 @@ fn shape(width: Option<usize>, len: usize) -> Vec<usize> {
     }
 }
 
-/// The gears, of which the engine of an environment has the first of each row.
+/// The gears. The engine of an environment has the first of each row.
 const GEARS: &str = "actuator_gear";
 
 /// Goes through the numbers of a model as the engine of an environment has them.
@@ -86,7 +86,7 @@ pub fn changes<'py>(py: Python<'py>, env: &babybench::Env) -> PyResult<Bound<'py
     Ok(dict)
 }
 
-/// Returns an array of the model as it is now.
+/// Returns the current values of an array of the model.
 pub fn array<'py>(py: Python<'py>, env: &babybench::Env, name: &str) -> PyResult<Bound<'py, PyAny>> {
     if CHANGEABLE.contains(&name) {
         value(py, env, name)
@@ -126,7 +126,7 @@ impl Watch {
         })
     }
 
-    /// Tells which arrays have other numbers now; the next call compares with these.
+    /// Returns which arrays have changed since the last call.
     fn changed(&mut self, arrays: Vec<PyReadonlyArrayDyn<'_, f64>>) -> PyResult<Vec<usize>> {
         let mut changed = Vec::new();
         for (k, (seen, array)) in self.seen.iter_mut().zip(&arrays).enumerate() {

@@ -79,7 +79,7 @@ pub fn dict_of_row<'py>(
 ) -> PyResult<Bound<'py, PyDict>> {
     let dict = PyDict::new(py);
     for (entry, values) in observation.entries() {
-        // images that are asked for are not among the spaces
+        // images on request are not among the spaces
         if let Some(space) = spaces.iter().find(|space| space.key == entry.key) {
             dict.set_item(entry.key, fresh_array(py, values, &space.shape)?)?;
         }
@@ -87,7 +87,7 @@ pub fn dict_of_row<'py>(
     Ok(dict)
 }
 
-/// Returns touch or pain as a fresh array, of which only what feels something is written.
+/// Returns touch or pain as a fresh array, writing only the active sensors.
 pub fn sparse<'py>(py: Python<'py>, touch: &SkinValues) -> PyResult<Bound<'py, PyArray1<f32>>> {
     let array = PyArray1::zeros(py, touch.values().len(), false);
     write_touched(array.readwrite().as_slice_mut()?, touch);
@@ -115,7 +115,7 @@ struct View {
 
 /// An observation whose arrays stay the same from step to step.
 pub struct Views {
-    /// What an observation has.
+    /// The contents of an observation.
     pub dict: Py<PyDict>,
     /// The images, if they are drawn for those who ask.
     pub images: Py<PyDict>,
@@ -123,7 +123,7 @@ pub struct Views {
 }
 
 impl Views {
-    /// Makes views of what an environment observes; images that are drawn for those who ask stand apart.
+    /// Creates views of an environment's observation. Images on request are separate.
     pub fn new(py: Python<'_>, env: &Env, lazy: bool) -> PyResult<Self> {
         let (dict, images, mut views) = (PyDict::new(py), PyDict::new(py), Vec::new());
         for space in env.observation_space() {
@@ -155,7 +155,7 @@ impl Views {
     pub fn update(&mut self, py: Python<'_>, env: &Env) -> PyResult<()> {
         let observed = env.observation().values();
         for view in &mut self.views {
-            // images that wait, and what a restored snapshot does not hold, stay as they are
+            // images still to be drawn, and parts that a restored snapshot does not hold, do not change
             let Some(values) = observed[view.place] else { continue };
             match (skin_of(env, view.entry), &view.slab) {
                 (Some(felt), AnySlab::F32(slab)) => {

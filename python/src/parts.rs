@@ -18,7 +18,7 @@ struct Memory {
     action: Vec<f32>,
     qpos: Vec<f64>,
     qvel: Vec<f64>,
-    /// Positions and velocities at the start of the last physics step, of which everything computed is.
+    /// Positions and velocities at the start of the last physics step, to which all computed quantities belong.
     start: (Vec<f64>, Vec<f64>),
 }
 
@@ -191,7 +191,7 @@ impl Parts {
         self.with(|env, _| fill(env.state(), &mut arrays))
     }
 
-    /// Writes which equality constraints hold now, and the positions and velocities of which everything computed is.
+    /// Writes which equality constraints are active, and the positions and velocities to which all computed quantities belong.
     fn fill_start(
         &self,
         mut eq_active: PyReadwriteArray1<'_, u8>,
@@ -217,8 +217,8 @@ impl Parts {
         })
     }
 
-    /// Tells which of `qpos`, `qvel`, `ctrl`, `act` and `qfrc_applied` differ from the state, bits 0 to 4, and whether
-    /// `xfrc_applied`, where it is given as the sixth, is not zero, bit 5.
+    /// Returns which of `qpos`, `qvel`, `ctrl`, `act` and `qfrc_applied` differ from the state, bits 0 to 4, and whether `xfrc_applied`,
+    /// if given as the sixth, is not zero, bit 5.
     fn differences(&self, arrays: Vec<PyReadonlyArrayDyn<'_, f64>>) -> PyResult<u32> {
         self.with(|env, _| {
             let s = env.state();

@@ -16,7 +16,7 @@ use crate::physics_fields::{COMPUTED, CONSTRAINTS, GROUPS, INPUT, POST, part, re
 use crate::physics_model::{PhysicsModel, params};
 use crate::state;
 
-/// Steps between two looks at whether somebody has pressed Ctrl-C.
+/// Steps between two checks for Ctrl-C.
 const UNINTERRUPTED: usize = 1000;
 
 impl IntoException for EngineError {
@@ -49,7 +49,7 @@ pub struct PhysicsData {
     active: Py<PyArray1<u8>>,
 }
 
-/// Tells whether MuJoCo computes accelerations of bodies in each step, as a sensor reads them.
+/// Returns whether MuJoCo computes accelerations of bodies in each step, because a sensor reads them.
 impl PhysicsData {
     fn guard(&self) -> PyResult<MutexGuard<'_, Inner>> {
         self.inner.try_lock().map_err(|e| {
@@ -137,7 +137,7 @@ impl PhysicsData {
         self.active.bind(py).clone()
     }
 
-    /// Returns names, groups and shapes of what lies in the memory, in its order.
+    /// Returns names, groups and shapes of the arrays in the memory, in order.
     #[getter]
     fn layout(&self) -> PyResult<Vec<(&'static str, u32, Vec<usize>)>> {
         Ok(state_layout(&self.guard()?.state))
@@ -154,7 +154,7 @@ impl PhysicsData {
         Ok(groups.unbind())
     }
 
-    /// Starts anew: everything zero but the positions, or those of a keyframe with what else it sets.
+    /// Resets: everything is zero except the positions, or the values of a keyframe.
     #[pyo3(signature = (key=None))]
     fn reset(&self, py: Python<'_>, key: Option<usize>) -> PyResult<()> {
         let (mut guard, ()) = self.with(py, |_| Ok(()))?;

@@ -161,7 +161,7 @@ fields! { state_fields, state_fields_mut, State;
     SENSORS => sensordata = sensordata;
 }
 
-// what a program may change between two steps: all that is read in each step and of which nothing is derived beforehand
+// what a program may change between two steps: everything that each step reads and nothing is derived from beforehand
 fields! { model_fields, model_fields_mut, Arrays;
     0 => opt_timestep = opt.timestep, opt_gravity = opt.gravity, opt_tolerance = opt.tolerance,
         opt_ls_tolerance = opt.ls_tolerance, opt_impratio = opt.impratio, opt_ccd_tolerance = opt.ccd_tolerance,

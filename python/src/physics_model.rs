@@ -57,7 +57,7 @@ pub struct PhysicsModel {
     assets: Arc<dyn AssetSource>,
 }
 
-/// The model as it is now, for states.
+/// The current model, for states.
 pub struct Now {
     pub soft: SoftModel,
     pub model: Arc<Model>,
@@ -186,7 +186,7 @@ fn flags(flags: &mut Flags) -> [&mut bool; 15] {
 
 #[pymethods]
 impl PhysicsModel {
-    /// Compiles a file; what it includes and its textures are where it says, as for MuJoCo.
+    /// Compiles a file. Includes and textures are found as MuJoCo finds them.
     #[staticmethod]
     fn from_file(py: Python<'_>, path: PathBuf) -> PyResult<Self> {
         let (assets, name) =
@@ -195,7 +195,7 @@ impl PhysicsModel {
         Ok(Self::made(py, model, Arc::new(assets)))
     }
 
-    /// Compiles a text, with files in place of those in and around a folder that it names.
+    /// Compiles a text, with files that replace those in and around a folder that it names.
     #[staticmethod]
     fn from_text(py: Python<'_>, text: &str, files: HashMap<String, Vec<u8>>, folder: PathBuf) -> PyResult<Self> {
         let assets = GivenFiles::new(files, folder)?;
@@ -215,7 +215,7 @@ impl PhysicsModel {
         self.memory.bind(py).clone()
     }
 
-    /// Returns names and shapes of what lies in the memory, in its order.
+    /// Returns names and shapes of the arrays in the memory, in order.
     #[getter]
     fn layout(&self) -> Vec<(&'static str, Vec<usize>)> {
         model_layout(&self.current().model)

@@ -23,7 +23,7 @@ pub struct Painters {
 pub enum Camera {
     /// One of the scene.
     Named(String),
-    /// One anywhere: the point that it looks at, m, distance, m, azimuth and elevation, degrees.
+    /// A free camera: the point that it looks at, m, distance, m, azimuth and elevation, degrees.
     Free((Vec3, f64, f64, f64)),
 }
 

@@ -4,7 +4,7 @@ use numpy::{Element, PyArray1, PyArrayMethods, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
 
-/// How many pieces of memory wait to be used again: who steps holds the last observation, and often the one before.
+/// Number of pieces of memory kept for reuse: a program that steps holds the last observation, and often the one before.
 const KEPT: usize = 3;
 
 /// Returns Python's own count of the references to an object.
@@ -19,7 +19,7 @@ pub fn references(object: &Bound<'_, PyAny>) -> PyResult<usize> {
 /// Memory for arrays of one size.
 pub struct Recycled<T> {
     pieces: Vec<Py<PyArray1<T>>>,
-    /// Count of references to a piece that nobody but this holds.
+    /// Reference count of a piece without other references.
     idle: usize,
     /// The piece that is given up next, if all are held.
     next: usize,
@@ -36,7 +36,7 @@ impl<T> Default for Recycled<T> {
 }
 
 impl<T: Element> Recycled<T> {
-    /// Returns an array of a shape that nobody else holds; `write` writes all of it.
+    /// Returns an unshared array of a shape, which `write` fills completely.
     pub fn array<'py>(
         &mut self,
         py: Python<'py>,
@@ -48,7 +48,7 @@ impl<T: Element> Recycled<T> {
         Ok(piece.reshape(shape)?.into_any())
     }
 
-    /// Returns memory of a size that nobody holds. Every array that shares it holds it, as NumPy's `base`.
+    /// Returns unreferenced memory of a size. Every array that shares it references it, as NumPy's `base`.
     fn free<'py>(&mut self, py: Python<'py>, size: usize) -> PyResult<Bound<'py, PyArray1<T>>> {
         for piece in &self.pieces {
             let piece = piece.bind(py);

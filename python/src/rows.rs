@@ -122,7 +122,7 @@ impl Arrays {
     }
 }
 
-/// Copies touch of which only what is felt is not zero: a long row for each environment.
+/// Copies the nonzero values of touch: a long row for each environment.
 fn copy_touched(from: &[f32], to: &mut [f32], width: usize, touched: &[Vec<u32>]) {
     to.fill(0.0);
     let row = from.len() / touched.len().max(1);

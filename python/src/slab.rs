@@ -17,7 +17,7 @@ pub struct Slab<T> {
 }
 
 impl<T: Element> Slab<T> {
-    /// Makes an array of zeros, of which Python sees a read-only view of a shape.
+    /// Creates an array of zeros, with a read-only view of a shape for Python.
     pub fn new(py: Python<'_>, shape: &[usize]) -> PyResult<Self> {
         let array = PyArray1::<T>::zeros(py, shape.iter().product::<usize>(), false);
         let view = array.call_method1(intern!(py, "reshape"), (shape,))?;
@@ -33,7 +33,7 @@ impl<T: Element> Slab<T> {
 
     /// Lends the array for writing.
     pub fn lend<'py>(&self, py: Python<'py>) -> PyReadwriteArray1<'py, T> {
-        // nobody else borrows it: Python has the view only
+        // there is no other borrow: Python has only the view
         self.array.bind(py).readwrite()
     }
 
@@ -63,7 +63,7 @@ macro_rules! slabs {
         }
 
         impl AnySlab {
-            /// Makes an array of zeros, of which Python sees a read-only view of a shape.
+            /// Creates an array of zeros, with a read-only view of a shape for Python.
             pub fn new(py: Python<'_>, dtype: Dtype, shape: &[usize]) -> PyResult<Self> {
                 Ok(match dtype {
                     $(Dtype::$kind => Self::$kind(Slab::new(py, shape)?),)*

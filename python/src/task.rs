@@ -11,7 +11,7 @@ use pyo3::types::PyDict;
 use crate::arrays::read;
 use crate::errors::IntoException;
 
-/// Puts what the reward of a task depends on beside goals into its information.
+/// Adds the terms of a task's reward to its information.
 pub fn add_terms(dict: &Bound<'_, PyDict>, env: &Env, details: bool) -> PyResult<()> {
     if details && env.info().behavior.task().is_some() {
         put_terms(dict, env.goal().terms)
@@ -20,7 +20,7 @@ pub fn add_terms(dict: &Bound<'_, PyDict>, env: &Env, details: bool) -> PyResult
     }
 }
 
-/// Puts terms of a reward into information.
+/// Adds terms of a reward to information.
 pub fn put_terms(dict: &Bound<'_, PyDict>, terms: &[f64]) -> PyResult<()> {
     let py = dict.py();
     dict.set_item(intern!(py, "reward_terms"), PyArray1::from_slice(py, terms))

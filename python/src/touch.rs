@@ -1,4 +1,4 @@
-//! The sense of touch: where the sensors are, what they feel.
+//! The sense of touch: positions and values of the sensors.
 
 use babybench::sensors::Touch;
 use babybench::sensors::touch::SkinBody;

@@ -24,7 +24,7 @@ use crate::{model_change, task};
 struct Inner {
     envs: babybench::VectorEnv,
     touch_width: usize,
-    /// Whether observations are without images, for those who ask for them.
+    /// Whether observations have no images, which are drawn on request.
     lazy: bool,
     /// The spaces of what observations have.
     spaces: Vec<ObservationSpace>,
@@ -32,7 +32,7 @@ struct Inner {
     all: Arrays,
     /// Rows of those that were received last.
     some: Option<Arrays>,
-    /// Whether the last rows are those that were received.
+    /// Whether the last rows are those of a receive.
     received: bool,
     actions: Vec<f32>,
 }
@@ -46,7 +46,7 @@ pub struct VectorEnv {
 }
 
 impl Drop for VectorEnv {
-    /// Leaves threads alone that stayed behind in the process that this one was forked from: nobody could wait for them.
+    /// Leaks the threads that stayed in the parent process of a fork, because they cannot be joined.
     fn drop(&mut self) {
         if std::process::id() != self.process {
             self.inner.forget();
@@ -198,7 +198,7 @@ impl VectorEnv {
         *received = true;
         let arrays = match some {
             Some(arrays) if arrays.rows == n => arrays,
-            // more than there are is refused below, without room for them
+            // a number that is too large is refused below, without an allocation
             _ => some.insert(Arrays::new(
                 py,
                 n.min(envs.len()),

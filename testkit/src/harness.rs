@@ -1,4 +1,4 @@
-//! Tests that say what they need: one that lacks it is ignored with the reason, never passed.
+//! Tests that declare their needs. A test whose needs are missing is ignored with the reason, never passed.
 //!
 //! A test binary with `harness = false` lists its tests with [`trials!`](crate::trials) and hands them to [`run`]:
 //!
@@ -126,7 +126,7 @@ pub fn show(line: std::fmt::Arguments) {
     }
 }
 
-/// Runs a test, and prints what it said when it fails or when all is to be shown.
+/// Runs a test, and prints its output when it fails or when all output is to be shown.
 fn run_kept(name: &str, test: fn(), arguments: &Arguments) {
     SAID.set((!arguments.nocapture).then(String::new));
     let result = catch_unwind(AssertUnwindSafe(test));
@@ -139,7 +139,7 @@ fn run_kept(name: &str, test: fn(), arguments: &Arguments) {
     }
 }
 
-/// Says why a test cannot run: the first need that is missing, and whether that is a failure.
+/// Returns why a test cannot run: the first missing need, and whether that is a failure.
 fn missing(trial: &Trial) -> Option<(String, bool)> {
     trial.needs.iter().find_map(|need| {
         let reason = need.checked().err()?;
@@ -169,10 +169,10 @@ fn end_at_once(conclusion: &Conclusion) {
     let _ = (flushed, conclusion);
 }
 
-/// Runs the tests as these arguments ask, the first of which is the name of the program.
+/// Runs the tests selected by these arguments, the first of which is the name of the program.
 pub fn run_with<A: Into<OsString> + Clone>(arguments: impl IntoIterator<Item = A>, trials: Vec<Trial>) -> Conclusion {
     let arguments = Arc::new(Arguments::from_iter(arguments));
-    // lists are asked for by other programs, which look for what is ignored in them
+    // other programs request lists, and look for ignored tests in them
     let listed = arguments.list || arguments.ignored;
     let ignored: Arc<Mutex<BTreeMap<String, String>>> = Arc::default();
     let tests = trials.into_iter().map(|trial| {

@@ -6,7 +6,7 @@ use fastrand::Rng;
 
 pub use document::{generate, mutate as mutate_document};
 
-/// Words that mean something in MJCF, YAML, JSON or XML, mostly where they stand out of place.
+/// Words of MJCF, YAML, JSON or XML, for use in wrong places.
 pub const WORDS: &[&[u8]] = &[
     b"nan",
     b"-1",
@@ -74,7 +74,7 @@ fn mutate_once(out: &mut Vec<u8>, words: &[&[u8]], rng: &mut Rng) {
         3 => drop(out.drain(at..end)),
         4 => drop(out.splice(at..end, word(rng))),
         5 => drop(out.splice(at..at, word(rng))),
-        // a quoted value becomes something else, which gets past the syntax
+        // a quoted value changes, which passes the syntax
         6 | 7 => {
             let quotes: Vec<usize> = (at..out.len()).filter(|&k| out[k] == b'"').take(2).collect();
             if let [from, to] = quotes[..] {

@@ -13,7 +13,7 @@ pub const REQUIRED: &str = "MUJOCO_CONFORMANCE";
 /// A Python with NumPy.
 pub const PYTHON: Need = Need::new("Python", Some(REQUIRED), || python().map(drop));
 
-/// A Python with MuJoCo, of which not every Python has a wheel.
+/// A Python with MuJoCo, which has no wheel for every Python.
 pub const PYTHON_MUJOCO: Need = Need::new("MuJoCo in Python", None, || {
     let python = python()?;
     has_module(&python, "mujoco")
@@ -22,7 +22,7 @@ pub const PYTHON_MUJOCO: Need = Need::new("MuJoCo in Python", None, || {
 /// A checkout of the BabyBench starter kit.
 pub const KIT: Need = Need::new("kit", None, || kit().map(drop));
 
-/// How long after a failure another process does not try again.
+/// Time after a failure in which other processes do not retry.
 const PATIENCE: Duration = Duration::from_secs(600);
 
 /// Returns the folder of the workspace.
@@ -34,7 +34,7 @@ pub fn workspace() -> &'static Path {
 /// Returns the folder of the BabyBench starter kit, which the variable `BABYBENCH_KIT` names.
 ///
 /// # Errors
-/// Says that the variable is not set, or that its folder is not the kit.
+/// Returns the reason: the variable is not set, or its folder is not the kit.
 pub fn kit() -> Result<PathBuf, String> {
     let folder = std::env::var_os("BABYBENCH_KIT").ok_or(
         "BABYBENCH_KIT names no checkout of the BabyBench starter kit, whose files are not part of this repository",
@@ -45,10 +45,10 @@ pub fn kit() -> Result<PathBuf, String> {
         .map_err(|e| format!("BABYBENCH_KIT: {e}"))
 }
 
-/// Tells whether a folder is a checkout of the BabyBench starter kit.
+/// Returns whether a folder is a checkout of the BabyBench starter kit.
 ///
 /// # Errors
-/// Says what is missing.
+/// Returns what is missing.
 pub fn check_kit(folder: &Path) -> Result<(), String> {
     for part in ["MIMo/mimoEnv/assets/babybench", "babybench/utils.py"] {
         let part = folder.join(part);
@@ -71,20 +71,20 @@ pub fn kit_assets() -> Result<PathBuf, String> {
     Ok(kit()?.join("MIMo/mimoEnv/assets"))
 }
 
-/// Returns a Python that has NumPy: the one that the variable `PYTHON` names, or an environment in `target/python`, which
-/// is made where it is missing.
+/// Returns a Python with NumPy: the one that the variable `PYTHON` names, or an environment in `target/python`, which is created if
+/// necessary.
 ///
 /// # Errors
-/// Says what is missing.
+/// Returns what is missing.
 pub fn python() -> Result<PathBuf, String> {
     python_with("numpy", "target/python", &[])
 }
 
-/// Returns a Python that the BabyBench starter kit runs on: the one that the variable `PYTHON` names, or an environment in
-/// `target/python-kit`, which is made where it is missing.
+/// Returns a Python that runs the BabyBench starter kit: the one that the variable `PYTHON` names, or an environment in
+/// `target/python-kit`, which is created if necessary.
 ///
 /// # Errors
-/// Says what is missing.
+/// Returns what is missing.
 pub fn kit_python() -> Result<PathBuf, String> {
     python_with("mujoco", "target/python-kit", &["kit"])
 }
@@ -115,7 +115,7 @@ fn has_module(python: &Path, module: &str) -> Result<(), String> {
 /// reason for ten minutes instead of trying again.
 ///
 /// # Errors
-/// Says why the script failed.
+/// Returns why the script failed.
 pub fn set_up(script: &str, arguments: &[&str], result: &Path) -> Result<(), String> {
     if result.exists() {
         return Ok(());

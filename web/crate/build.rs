@@ -1,4 +1,4 @@
-//! Bounds the memory of the module: what asks for more fails with an error, and does not take the browser down.
+//! Bounds the memory of the module, so that larger requests fail with an error and do not crash the browser.
 
 /// Most memory that the module may take, bytes. Scenes need 20 to 60 MB; many environments more.
 const MAX_MEMORY: u32 = 1 << 30;

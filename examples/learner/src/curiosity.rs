@@ -50,7 +50,7 @@ impl DoubleTouch {
     /// Marks in `felt` the pairs that are felt in this step.
     pub fn feel(&self, env: &Env, felt: &mut [bool]) {
         let contacts = env.senses().touch().map_or(&[][..], |touch| touch.contacts());
-        // both sides of a contact stand next to each other
+        // both sides of a contact are adjacent
         for pair in contacts.windows(2) {
             let [one, other] = pair else { continue };
             if one.contact != other.contact {
@@ -67,7 +67,7 @@ impl DoubleTouch {
     }
 }
 
-/// How rare each touch has been in the last episodes.
+/// The rarity of each touch in the last episodes.
 #[derive(Clone, Debug)]
 pub struct Novelty {
     /// For each pair the share of episodes with it.
@@ -96,7 +96,7 @@ impl Novelty {
     }
 }
 
-/// A model that foresees what the skin will feel from what is sensed and done, and is surprised where it errs.
+/// A model that predicts touch from observation and action. Its error is the surprise.
 pub struct Foresight {
     network: Mlp,
     optimizer: AdamW,

@@ -12,7 +12,7 @@ use crate::mind::{HOLD, Mind};
 use crate::network::Noise;
 use crate::training::Kind;
 
-/// A trained mind as a policy: it goes on as it did, but learns no more.
+/// A trained mind as a policy that no longer learns.
 pub struct Learned {
     mind: Arc<Mind>,
     /// The parts touched in this episode.
@@ -32,7 +32,7 @@ impl Learned {
 impl Policy for Learned {
     fn begin(&mut self, env: &mut Env, _episode: u64) -> Result<(), PolicyError> {
         self.touched.fill(false);
-        // the noise follows from the seed of the episode, whoever runs it
+        // the noise follows from the seed of the episode, on any thread
         let mut action = Vec::new();
         env.sample_action(&mut action);
         let bits = action.iter().map(|v| u64::from(v.to_bits()));

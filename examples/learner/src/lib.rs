@@ -9,8 +9,8 @@
 //! - [`training`]: many environments, the training log, and the random policies to compare with.
 //! - [`evaluation`]: what was learned, as a [`Policy`](babybench::policy::Policy).
 //!
-//! Environments are stepped on all cores, but everything that is learned from is read in the order of environments: the
-//! same seed gives the same bits, whatever the number of threads.
+//! Environments are stepped on all cores, but everything that is learned from is read in the order of environments, so the same seed
+//! gives the same bits, whatever the number of threads.
 #![forbid(unsafe_code)]
 #![deny(missing_docs)]
 

@@ -21,7 +21,7 @@ impl Noise {
         (radius * (std::f64::consts::TAU * self.0.uniform()).cos()) as f32
     }
 
-    /// Puts the numbers below `n` in random order.
+    /// Returns the numbers below `n` in random order.
     pub fn shuffled(&mut self, n: usize) -> Vec<u32> {
         let mut order: Vec<u32> = (0..n as u32).collect();
         for k in (1..n).rev() {

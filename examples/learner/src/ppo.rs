@@ -10,7 +10,7 @@ use crate::network::{Mlp, Noise};
 const DISCOUNT: f32 = 0.98;
 /// Decay of the generalized advantage.
 const TRACE: f32 = 0.95;
-/// How far the probability of an action may move in an update.
+/// Limit on the change of an action's probability in an update.
 const CLIP: f64 = 0.2;
 /// Times that an update goes through its experience.
 const EPOCHS: usize = 6;
@@ -39,7 +39,7 @@ pub struct Experience {
 }
 
 impl Experience {
-    /// Forgets everything.
+    /// Clears everything.
     pub fn clear(&mut self) {
         let Self {
             senses,
@@ -54,7 +54,7 @@ impl Experience {
             .for_each(Vec::clear);
     }
 
-    /// Computes how much better each decision was than expected, and what it should have been expected to bring.
+    /// Computes the advantage of each decision, and the target of its value.
     fn advantages(&self, envs: usize) -> [Vec<f32>; 2] {
         let n = self.rewards.len();
         let mut advantages = vec![0.0; n];

@@ -5,8 +5,8 @@ use babybench::Env;
 /// Numbers beyond this many standard deviations are cut off.
 const MOST: f32 = 5.0;
 
-/// The senses of an infant, put together: joints, balance, force on each part of the skin, what was touched in this
-/// episode, and how much of it is left.
+/// The combined senses of an infant: joints, balance, force on each part of the skin, touches so far, and the remaining time of the
+/// episode.
 #[derive(Clone, Debug)]
 pub struct Senses {
     bodies: Vec<usize>,

@@ -9,7 +9,7 @@ use crate::Error;
 use crate::mind::{HOLD, Mind};
 use crate::ppo::{Experience, rows};
 
-/// Who decides.
+/// The policy.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
     /// A random action in every step, as `babybench train` does.
@@ -34,7 +34,7 @@ impl Kind {
     }
 }
 
-/// How much is trained.
+/// The amount of training.
 #[derive(Clone, Copy, Debug)]
 pub struct Settings {
     /// Number of environments.

@@ -22,7 +22,7 @@ _POSE = {"shoulder_ad_ab": 0.1, "right_hip2": -0.12, "left_hip2": -0.12}
 
 
 def touch_on_body(records: Mapping[str, Record], *, what: str = "own", to_scale: bool = True) -> Figure:
-    """Draws how long each place of the skin is touched, a pair of views for each record: over training, or by age.
+    """Draws the duration of touch on the skin, a pair of views for each record: over training, or by age.
 
     Sensors that felt nothing are grey; the colour of the others is the share of the time in which they did, on one
     logarithmic scale.

@@ -57,7 +57,7 @@ def read(path: Union[str, Path]) -> list[dict[str, Any]]:
                 if int(record["steps"]) > 0:
                     records.append(record)
     except (ValueError, TypeError, KeyError):
-        raise ValueError(f"{file}, line {number}: no record of a training log") from None
+        raise ValueError(f"{file}, line {number}: not a record of a training log") from None
     if not records:
         raise ValueError(f"{file}: the log has no episodes")
     return records

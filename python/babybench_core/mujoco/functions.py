@@ -308,7 +308,7 @@ def mj_integratePos(m: MjModel, qpos: _Floats, qvel: ArrayLike, dt: float) -> No
 
 
 def mj_differentiatePos(m: MjModel, qvel: _Floats, dt: float, qpos1: ArrayLike, qpos2: ArrayLike) -> None:
-    """Computes the velocities (nv) that lead from positions to others in some time, s."""
+    """Computes the velocities (nv) that lead from one position to another in a given time, s."""
     first, second = np.asarray(qpos1, np.float64), np.asarray(qpos2, np.float64)
     for free, q, v in _joints(m):
         if free:
@@ -332,7 +332,7 @@ _STATE = ("time", "qpos", "qvel", "act", "qacc_warmstart", "ctrl", "qfrc_applied
 
 def _parts(d: MjData, spec: int) -> list[NDArray[Any]]:
     if not 0 <= spec < 1 << mjtState.mjNSTATE:
-        raise ValueError(f"{spec} is not a sum of parts of a state: see mjtState")
+        raise ValueError(f"{spec} is not a sum of parts of a state; see mjtState")
     arrays: dict[str, NDArray[Any]] = {**d._arrays, "time": d._clock}
     return [arrays[name] for bit, name in enumerate(_STATE) if spec >> bit & 1]
 
@@ -341,7 +341,7 @@ def mj_stateSize(m: MjModel, spec: int) -> int:
     """Returns how many numbers parts of a state have: a sum of ``mjtState``."""
     sizes = (1, m.nq, m.nv, m.na, m.nv, m.nu, m.nv, 6 * m.nbody, m.neq)
     if not 0 <= int(spec) < 1 << mjtState.mjNSTATE:
-        raise ValueError(f"{spec} is not a sum of parts of a state: see mjtState")
+        raise ValueError(f"{spec} is not a sum of parts of a state; see mjtState")
     return sum(size for bit, size in enumerate(sizes) if int(spec) >> bit & 1)
 
 

@@ -37,7 +37,7 @@ class OffScreenViewer:
         """Draws from a camera of the model, or from the free one: colours, the depth buffer (0 near, 1 far), or both."""
         if segmentation:
             raise NotImplementedError(
-                "segmentation is not served here: use babybench.mujoco.Renderer.enable_segmentation_rendering"
+                "segmentation is not available here: use babybench.mujoco.Renderer.enable_segmentation_rendering"
             )
         if camera_id is not None:
             self.cam.type = int(mjtCamera.mjCAMERA_FREE if camera_id == -1 else mjtCamera.mjCAMERA_FIXED)

@@ -176,7 +176,7 @@ impl Acuity {
     }
 }
 
-/// Added before the fraction is cut off, for whole numbers that rounding has made a little smaller.
+/// Added before truncation, for whole numbers that rounding has made slightly smaller.
 const EXACT: f64 = 1e-9;
 
 /// Returns the exponent of the transfer function: from 1 at 0.1 cycles per degree to 0.01 at the cut-off, two decades down over

@@ -272,7 +272,7 @@ enum Memory {
 }
 
 impl Delay {
-    /// Creates a delay of signals of the size of `like`, whose values do not matter. A step takes `step_ms` ms.
+    /// Creates a delay of signals of the size of `like`, whose values are ignored. A step takes `step_ms` ms.
     pub fn new(steps: usize, step_ms: f64, like: &Signal<'_>) -> Self {
         let memory = match like {
             Signal::Numbers(values) => {

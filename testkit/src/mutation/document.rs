@@ -2,7 +2,7 @@
 
 use fastrand::Rng;
 
-/// Words in place of numbers.
+/// Words that replace numbers.
 const WORDS: [&str; 24] = [
     "nan", "inf", "-1", "0", "1", "2", "3", "1e400", "abc", "1e-320", "+.5", "1e", "", " ", "-0", "1e3", "90", ".1",
     "5.", "0x10", "1,2", "1 2 3", "true", "auto",
@@ -110,7 +110,7 @@ fn tags(text: &str) -> Vec<Tag> {
     tags
 }
 
-/// Changes one thing of a document. What comes out is mostly well-formed.
+/// Changes one part of a document. The result is usually well-formed.
 pub fn mutate(text: &str, rng: &mut Rng) -> String {
     let tags = tags(text);
     if tags.is_empty() {

@@ -74,7 +74,7 @@ impl Core {
     /// Draws a random action into the view `action`.
     #[wasm_bindgen(js_name = sampleAction)]
     pub fn sample_action(&mut self) {
-        // the room is enough, so that the view stays where it is
+        // the capacity suffices, so the view does not move
         self.env.sample_action(&mut self.action);
     }
 
@@ -96,8 +96,8 @@ impl Core {
         done(draw_eyes([&mut self.env]))
     }
 
-    /// Returns where numbers stand: kind (1 for u8, 4 for f32, 5 for i32, 8 for f64), address, length. They stay there
-    /// until a snapshot is restored; those of the frame move with `update`.
+    /// Returns the location of numbers: kind (1 for u8, 4 for f32, 5 for i32, 8 for f64), address, length. They stay there until a
+    /// snapshot is restored; those of the frame move with `update`.
     pub fn view(&self, name: &str) -> Option<Vec<u32>> {
         let seen = self.env.observation();
         let entry = seen.entries().find(|(entry, _)| entry.field == name);
@@ -163,7 +163,7 @@ impl Core {
         Ok(scene::look(self.env.model(), &scenery))
     }
 
-    /// Returns where the pixels of an image of a texture stand: address and length in bytes, red, green, blue and 255.
+    /// Returns the location of the pixels of a texture's image: address and length in bytes, red, green, blue and 255.
     #[wasm_bindgen(js_name = texturePixels)]
     pub fn texture_pixels(&mut self, texture: usize, face: usize) -> Result<Option<Vec<u32>>, JsValue> {
         let scenery = self.scenery()?;
@@ -300,8 +300,8 @@ impl Core {
         self.env.snapshot().as_bytes().to_vec()
     }
 
-    /// Goes back to a snapshot, with poses, contacts, forces and touch brought up to date, so that they can be drawn at once, and the
-    /// rest of the observation as it was, so that a network that looks at it goes on with the same bits.
+    /// Restores a snapshot, with poses, contacts, forces and touch recomputed, so that they can be drawn immediately, and the rest of the
+    /// observation as it was, so that a network that reads it continues with the same bits.
     pub fn restore(&mut self, bytes: Vec<u8>) -> Result<(), JsValue> {
         let snapshot = Snapshot::from_bytes(bytes).map_err(js::error)?;
         done(self.env.by_hand().resume(&snapshot))
@@ -321,8 +321,8 @@ impl Core {
         self.env.state_mut().release_forces();
     }
 
-    /// Draws from a camera of the scene or, with `free` (lookat, distance, azimuth, elevation), from anywhere. Returns where
-    /// the pixels stand: address and length in bytes, red, green, blue and 255.
+    /// Draws from a camera of the scene or, with `free` (lookat, distance, azimuth, elevation), from a free camera. Returns the location
+    /// of the pixels: address and length in bytes, red, green, blue and 255.
     pub fn draw(
         &mut self,
         camera: &str,
@@ -347,8 +347,8 @@ impl Core {
         place.map_err(|e| js::env_error(&e))
     }
 
-    /// Draws what both eyes see at this moment, with their acuity and foveation, and leaves the observation as it is. Returns where the
-    /// pixels of the left and then the right picture stand, as `draw`.
+    /// Draws the current view of both eyes, with their acuity and foveation, without changing the observation. Returns the location of
+    /// the pixels of the left and then the right picture, like `draw`.
     #[wasm_bindgen(js_name = lookThroughEyes)]
     pub fn look_through_eyes(&mut self) -> Result<Vec<u32>, JsValue> {
         let mut viewer = self.take_viewer()?;
@@ -384,7 +384,7 @@ impl Core {
 }
 
 impl Core {
-    /// Returns the look of the scene, made when it is first needed.
+    /// Returns the look of the scene, made on first use.
     fn scenery(&mut self) -> Result<Arc<Scenery>, JsValue> {
         if let Some(scenery) = &self.scenery {
             return Ok(scenery.clone());
@@ -412,7 +412,7 @@ impl Core {
     }
 }
 
-/// Forgets what a call returns; its error becomes an `Error`.
+/// Drops the result of a call and converts its error to an `Error`.
 fn done<T>(result: Result<T, babybench::EnvError>) -> Result<(), JsValue> {
     result.map(drop).map_err(|e| js::env_error(&e))
 }

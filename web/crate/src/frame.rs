@@ -15,7 +15,7 @@ pub struct Frame {
     pub poses: Vec<f32>,
     /// For each body (7): position, m, and quaternion, w first.
     pub bodies: Vec<f32>,
-    /// For each touch sensor the size of what it feels, N.
+    /// The magnitude of each touch sensor's force, N.
     pub felt: Vec<f32>,
     /// For each drawable that is worn (6 for each vertex of its mesh): positions of all, m, then their unit normals, in the world.
     pub worn: Vec<f32>,

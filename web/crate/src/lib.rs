@@ -34,12 +34,12 @@ pub struct Blueprint(babybench::Blueprint);
 
 #[wasm_bindgen]
 impl Blueprint {
-    /// Builds the scene of a configuration in YAML; `name` stands for its file in errors. A custom scene is looked for among
-    /// the caller's files, by path, which lie over those of the library.
+    /// Builds the scene of a configuration in YAML. Errors name `name` as its file. A custom scene is searched for among the caller's
+    /// files, by path, which override those of the library.
     #[wasm_bindgen(constructor)]
     pub fn new(yaml: &str, name: &str, paths: Vec<String>, contents: Vec<Uint8Array>) -> Result<Blueprint, JsValue> {
         let mut config = Config::from_yaml(yaml, name).map_err(|e| js::config_error(&e))?;
-        // a page that wants no pictures defers them: its arrays are of what was observed last
+        // a page without pictures defers them, so its arrays hold the last observation
         config.vision_lazy = false;
         let mut files = MemoryAssets::new();
         for (path, bytes) in paths.iter().zip(contents) {

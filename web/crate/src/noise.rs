@@ -30,7 +30,7 @@ impl ActionNoise {
         self.action.clone()
     }
 
-    /// Begins anew.
+    /// Restarts.
     pub fn reset(&mut self, seed: u64) {
         self.noise.reset(seed);
     }

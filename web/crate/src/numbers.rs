@@ -1,4 +1,4 @@
-//! Where JavaScript finds numbers in the memory of the module.
+//! Locations of numbers in the memory of the module, for JavaScript.
 
 use babybench::physics::State;
 use babybench::spaces::Values;

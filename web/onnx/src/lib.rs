@@ -1,4 +1,4 @@
-//! ONNX policies for JavaScript. The environment lives in another module, so what it observes comes as arrays.
+//! ONNX policies for JavaScript. The environment is in another module, so observations arrive as arrays.
 #![forbid(unsafe_code)]
 
 use babybench::policy::OnnxPolicy;
@@ -20,7 +20,7 @@ pub struct Model {
 
 #[wasm_bindgen]
 impl Model {
-    /// Reads a model; `name` stands for its file in errors, `low` and `high` are the bounds of actions.
+    /// Reads a model. Errors name `name` as its file; `low` and `high` are the bounds of actions.
     #[wasm_bindgen(constructor)]
     pub fn new(bytes: Vec<u8>, name: &str, low: Vec<f32>, high: Vec<f32>) -> Result<Model, JsValue> {
         let policy = OnnxPolicy::from_bytes(bytes, name).map_err(error)?;
@@ -32,7 +32,7 @@ impl Model {
         })
     }
 
-    /// Tells of an entry of the observation that is there: its property, and its shape.
+    /// Adds an entry of the observation: its property, and its shape.
     pub fn sense(&mut self, field: &str, shape: Vec<usize>) -> Result<(), JsValue> {
         let known = ObservationEntry::ALL.iter().find(|entry| entry.field == field);
         let entry = known.ok_or_else(|| error(format!("nothing that is observed is called {field:?}")))?;
@@ -54,7 +54,7 @@ impl Model {
         self.policy.connect(&spaces).map_err(error)
     }
 
-    /// Returns the action for an observation: the arrays of the entries, in the order in which [`Model::sense`] told of them.
+    /// Returns the action for an observation: the arrays of the entries, in the order of the calls of [`Model::sense`].
     pub fn act(&mut self, observed: Vec<JsValue>) -> Result<Vec<f32>, JsValue> {
         for ((space, values), array) in self.senses.iter_mut().zip(observed) {
             let read = match space.dtype {

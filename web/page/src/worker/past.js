@@ -25,7 +25,7 @@ export class Past {
     this.width = width;
     this.apart = Math.max(1, Math.round(APART / seconds));
     this.kept = Math.round(KEPT / seconds);
-    /** Where the world is, and the latest moment that is known; steps since the beginning. */
+    /** The current moment of the world, and the latest known one; steps since the beginning. */
     this.at = 0;
     this.last = recording?.steps ?? 0;
     /** Whether these are the steps of a recording, and nothing beside. */

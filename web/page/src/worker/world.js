@@ -36,7 +36,7 @@ export class LiveWorld {
     this.goal = null;
     /** @type {Promise<void> | null} */
     this.travelling = null;
-    /** Whether steps tell nobody what happens. */
+    /** Whether steps send no messages. */
     this.quiet = false;
     /** @type {import("./model.js").Model | null} */
     this.model = null;
@@ -109,7 +109,7 @@ export class LiveWorld {
     this.twin?.forget();
   }
 
-  /** Refuses what two cannot do. */
+  /** Returns an error for requests that two MIMos do not support. */
   single() {
     if (this.twin) throw new Error("A recording is of one MIMo: end the comparison first.");
   }
