@@ -14,7 +14,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     ] {
         let config = Config {
             save_dir: format!("results/random_{name}"),
-            vision_active: false, // the random policy does not look
+            vision_active: false, // the random policy needs no images
             ..Config::from_yaml(text, name)?
         };
 

@@ -1,4 +1,4 @@
-//! Prints how documents fare beside MuJoCo: random ones, of which it keeps what differs, and those that people have.
+//! Compares documents with MuJoCo: random ones, of which it keeps those that differ, and public ones.
 
 use std::ops::Range;
 use std::path::{Path, PathBuf};
@@ -77,7 +77,7 @@ pub fn print_worlds_part(folders: &[String], range: Range<u64>) -> Result<(), St
 /// Compares all documents under some folders, prints the tables, and writes everything into `json`.
 ///
 /// # Errors
-/// MuJoCo is missing, a folder cannot be read, a file cannot be written, the sides mean something else by a document.
+/// MuJoCo is missing, a folder cannot be read, a file cannot be written, or the sides disagree about a document.
 pub fn print_worlds(folders: &[String], json: Option<&Path>) -> Result<(), String> {
     if folders.is_empty() {
         return Err(

@@ -78,7 +78,7 @@ impl ExampleRun {
 
     /// Measures distances after the reset and at the recorded steps.
     ///
-    /// The run begins at the recorded settled state, with the recorded start actions.
+    /// The run starts at the recorded settled state, with the recorded start actions.
     pub fn run(&self, blueprint: &Blueprint) -> Vec<Moment> {
         let mut env = blueprint.env().expect("the environment builds");
         env.reset_to(&numbers(&self.json["init_qpos"]), &numbers(&self.json["init_qvel"]))

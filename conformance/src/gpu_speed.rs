@@ -22,21 +22,21 @@ const PICTURE: usize = 3 * SIZE * SIZE;
 struct Row {
     scene: String,
     renderer: String,
-    /// What it runs on.
+    /// Its device.
     device: String,
     environments: usize,
-    /// A round, ms: until the pictures are in memory, and without that copy where a renderer can tell.
+    /// Time of a round, ms: until the pictures are in memory, and without that copy if a renderer can tell.
     host: f64,
     device_only: Option<f64>,
     /// Pictures of both eyes of each state.
     pictures: Rc<Vec<u8>>,
 }
 
-/// Prints how long both eyes of so many environments take: ours on a GPU and on the CPU, MuJoCo's on a GPU, and MuJoCo Warp's
-/// where the variable `MJWARP_PYTHON` names a Python that has it.
+/// Prints the times of both eyes of given numbers of environments: our renderers on a GPU and on the CPU, MuJoCo's on a GPU, and MuJoCo
+/// Warp's if the variable `MJWARP_PYTHON` names a Python that has it.
 ///
 /// # Errors
-/// There is no graphics adapter; the Python is missing or fails; a state cannot be drawn.
+/// A missing graphics adapter; a Python that is missing or fails; a state that cannot be drawn.
 pub fn print(environments: &[usize]) -> Result<(), String> {
     let egl = others::rows(&python::find()?, "egl", environments)?;
     let warp = match std::env::var_os("MJWARP_PYTHON").map(PathBuf::from) {

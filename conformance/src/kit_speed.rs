@@ -93,7 +93,7 @@ pub fn print(kit: &Path, python: &Path, filter: &str) -> Result<(), String> {
     Ok(())
 }
 
-/// Measures the CPU time of a step, ms, for each turn: the kit's and ours. Who begins alternates.
+/// Measures the CPU time of a step, ms, for each turn: the kit's and ours. The first side alternates.
 fn measure(kit: &Path, python: &Path, task: &Task) -> Result<[Vec<f64>; 2], String> {
     let mut theirs = KitEnv::start(kit, python, &task.theirs)?;
     let ours = Env::new(task.ours.clone()).and_then(|mut env| env.reset(Some(SEED)).map(drop).map(|()| env));

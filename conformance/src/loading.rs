@@ -16,7 +16,7 @@ const TOLERANCE: f64 = 1e-10;
 /// The same where masses are sums in single precision over triangles in another order.
 const OF_HULLS: f64 = 1e-5;
 
-/// The same for normals of polygons of such meshes, whose corners are off by digits of single precision: times what [`needle`] tells.
+/// The same for normals of polygons of such meshes, whose corners differ in digits of single precision, times the factor of [`needle`].
 const OF_NORMALS: f64 = 1e-6;
 
 /// The same for angles of lenses, which MuJoCo takes from the system's arctangent in single precision.
@@ -42,7 +42,7 @@ pub enum Outcome {
 /// leaves of zero.
 pub const SINGULAR: &str = "inertias that are singular";
 
-/// Tells why our loader rejects what MuJoCo accepts, where it is meant to.
+/// Returns why our loader rejects what MuJoCo accepts, if it is meant to.
 pub fn deliberate(error: &LoadError) -> Option<&'static str> {
     match &error.kind {
         ErrorKind::UnknownElement(_) | ErrorKind::UnknownAttribute(_) => {
@@ -100,7 +100,7 @@ pub fn compare(api: &'static Mujoco, main: &str, files: &[(&str, &str)], assets:
     compare_bytes(api, (main, text), &bytes, assets)
 }
 
-/// Loads a document, of which name and text are given and which is one of `files`, with both, and compares the compiled models.
+/// Loads a document, given by name and text and part of `files`, with both, and compares the compiled models.
 pub fn compare_bytes(
     api: &'static Mujoco,
     (main, text): (&str, &str),
@@ -128,7 +128,7 @@ pub struct Distance {
     pub error: f64,
     /// The error up to which the array counts as equal.
     pub limit: f64,
-    /// Where the largest difference is, for people to read.
+    /// The place of the largest difference, for display.
     pub place: String,
 }
 

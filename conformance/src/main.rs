@@ -162,7 +162,7 @@ fn number(name: &str, text: Option<String>, default: usize) -> Result<usize, Str
     })
 }
 
-/// Returns the values of options, each of which may be left out.
+/// Returns the values of options. Each is optional.
 fn values<const N: usize>(options: &[String], names: [&str; N]) -> Result<[Option<String>; N], String> {
     let mut out = [const { None }; N];
     for pair in options.chunks(2) {

@@ -80,7 +80,7 @@ pub fn rms(a: &[f64], b: &[f64]) -> f64 {
     (a.iter().zip(b).map(|(x, y)| (x - y).powi(2)).sum::<f64>() / a.len().max(1) as f64).sqrt()
 }
 
-/// Tells whether `BB_TOL_SCALE=0` asks tests to print residuals instead of judging them.
+/// Returns whether `BB_TOL_SCALE=0` asks tests to print residuals instead of judging them.
 pub fn only_print() -> bool {
     std::env::var("BB_TOL_SCALE").is_ok_and(|v| v == "0")
 }

@@ -1,5 +1,5 @@
-//! How far pictures are apart, and the pictures of MuJoCo's own renderer in `data/render_*.npz`, which
-//! `scripts/render_goldens.py` writes and describes.
+//! Differences of pictures, and the pictures of MuJoCo's own renderer in `data/render_*.npz`, which `scripts/render_goldens.py` writes
+//! and describes.
 
 use babybench::config::{Behavior, Config, Scene};
 use babybench::formats::npz::Npz;

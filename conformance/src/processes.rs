@@ -1,7 +1,8 @@
 //! Documents in processes of their own, so that one at which MuJoCo falls ends no others.
 //!
-//! A process writes the number of each document before it starts with it, and as JSON what came out behind it. Where it is killed by an invalid
-//! access to memory, which safe Rust does not make, the last number is the document at which MuJoCo fell; another process goes on behind it.
+//! A process writes the number of each document before it starts it, and the result as JSON after it. If an invalid access to memory
+//! kills the process, which safe Rust never causes, the last number is the document at which MuJoCo crashed. Another process continues
+//! after it.
 
 use std::io::Write;
 use std::ops::Range;
@@ -21,7 +22,7 @@ const DONE: &str = "done ";
 /// A document in another process.
 #[derive(Debug, PartialEq)]
 pub enum Ran<T> {
-    /// What came out.
+    /// The result.
     Done(T),
     /// MuJoCo fell at it.
     Fell,
@@ -48,7 +49,7 @@ pub fn ranges(count: u64, length: u64) -> Vec<Range<u64>> {
     starts.map(|k| k..count.min(k + length)).collect()
 }
 
-/// Runs the documents of a range, and goes on behind those at which MuJoCo falls.
+/// Runs the documents of a range, and continues after those at which MuJoCo crashes.
 fn all_of<T: DeserializeOwned>(
     mut range: Range<u64>,
     child: &(impl Fn(&Range<u64>) -> Command + Sync),
@@ -83,7 +84,7 @@ fn all_of<T: DeserializeOwned>(
     Ok(all)
 }
 
-/// Tells whether a process ended by an invalid access to memory, or because its allocator found what such an access had destroyed.
+/// Returns whether a process ended by an invalid access to memory, or because its allocator found the damage of one.
 fn fell(output: &Output) -> bool {
     #[cfg(unix)]
     {
@@ -104,7 +105,7 @@ fn fell(output: &Output) -> bool {
     }
 }
 
-/// Runs the documents of a range in this process, and tells the one that started it.
+/// Runs the documents of a range in this process, and reports to its parent.
 ///
 /// # Errors
 /// A closed output.

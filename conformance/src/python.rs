@@ -9,11 +9,10 @@ use testkit::yardsticks::kit_python;
 pub const NEEDS: &str = "the packages of conformance/scripts/kit_requirements.txt in the Python that the variable PYTHON names \
                          (or that is made in target/python-kit), and OSMesa (Debian, Ubuntu: apt install libosmesa6)";
 
-/// Returns the Python that the variable `PYTHON` names, or an environment in `target/python-kit`, which is made where it is
-/// missing.
+/// Returns the Python that the variable `PYTHON` names, or an environment in `target/python-kit`, which is created if necessary.
 ///
 /// # Errors
-/// Says why it could not be made.
+/// The reason why it could not be created.
 pub fn find() -> Result<PathBuf, String> {
     kit_python().map_err(|e| format!("there is no Python to compare with: {e}; it needs {NEEDS}"))
 }

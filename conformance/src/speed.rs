@@ -4,7 +4,7 @@ use conformance::live::speed::{Speed, measure};
 use conformance::live::{Case, Motion};
 use conformance::mujoco::reference;
 
-/// Prints the ratio of CPU times for the scenes whose name and motion contain `filter`; nothing if there are none.
+/// Prints the ratio of CPU times for the scenes whose name and motion contain `filter`.
 ///
 /// # Errors
 /// MuJoCo is missing or does not load a scene; the engine fails.

@@ -36,7 +36,7 @@ pub extern "C" fn line(kind: usize, index: usize) -> usize {
     let job = KINDS
         .get(kind)
         .and_then(|kind| Job::all(kind.1, usize::MAX).get(index).copied());
-    job.map_or(0, |job| answer(job.line(7, None))) // seven threads, of which there is one here
+    job.map_or(0, |job| answer(job.line(7, None))) // seven threads, only one of which exists here
 }
 
 /// Returns the length of a configuration's name: 0 after the last one.

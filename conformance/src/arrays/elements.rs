@@ -102,7 +102,7 @@ pub(super) fn of_sites_and_cameras(m: &Model) -> Named {
     ]
 }
 
-/// Returns the arrays that recordings do not have: those are compared with MuJoCo alone where it runs.
+/// Returns the arrays that recordings lack, which are compared only with a running MuJoCo.
 pub fn unrecorded(m: &Model) -> Named {
     let kinds = |all: &[ObjType]| all.iter().map(|kind| f64::from(kind.code())).collect();
     let keys = |of: fn(&Keyframe) -> &[f64]| m.keys.iter().flat_map(of).copied().collect();

@@ -1,4 +1,4 @@
-//! What only changes pictures.
+//! Arrays that only change pictures.
 
 use babybench::Model;
 
@@ -108,7 +108,7 @@ fn of_views(m: &Model) -> Named {
 
 /// Cuts the rows of MuJoCo's arrays to the width of ours, after checking that the rest is unused (0 or -1).
 ///
-/// `mat_texid` holds one texture per role, of which the models use the second (colour).
+/// `mat_texid` holds one texture per role. The models use the second (colour).
 pub fn narrowed(name: &str, recorded: &[f64]) -> Vec<f64> {
     let (wide, first, keep) = match name {
         "mat_texid" => (10, 1, 1),

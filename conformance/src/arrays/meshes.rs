@@ -97,7 +97,7 @@ fn hulls(m: &Model) -> impl Iterator<Item = Option<&MeshHull>> {
     m.meshes.iter().map(|mesh| mesh.hull.as_ref())
 }
 
-/// Returns where in `mesh_graph` the hull of each mesh begins: -1 where it has none.
+/// Returns the index in `mesh_graph` of the hull of each mesh, or -1 without a hull.
 fn graph_addresses(m: &Model) -> Vec<f64> {
     let mut next = 0;
     let address = |hull: Option<&MeshHull>| {

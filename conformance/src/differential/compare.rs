@@ -19,13 +19,13 @@ use crate::mujoco::{Contact, Mujoco, Simulation};
 /// Scaled condition of the inertia above which MuJoCo's own accelerations are noise.
 const CONDITION: f64 = 1e8;
 
-/// Regularisation of a constraint row below which they are, too.
+/// Regularisation of a constraint row below which they are noise, too.
 const REGULARISATION: f64 = 1e-13;
 
 /// Largest entry of a row of the Jacobian below which it is rounding errors, of what moves nothing. MuJoCo leaves out rows of zeros alone.
 const RATE: f64 = 1e-12;
 
-/// Largest position and velocity that MuJoCo goes on from.
+/// Largest position and velocity from which MuJoCo continues.
 const MAX_VALUE: f64 = 1e10;
 
 /// Times that MuJoCo is stepped from nearly the same state where the sides differ.
@@ -49,7 +49,7 @@ pub enum Taken {
 
 /// Result of a step from one state on both sides.
 pub enum Stepped {
-    /// MuJoCo gives up or warns, as where numbers are no longer finite, or will in the next step.
+    /// MuJoCo gives up or warns, for example about numbers that are not finite, or will in the next step.
     Diverged,
     /// MuJoCo's own numbers are noise there: an inertia that is nearly singular, hardly any regularisation.
     Noise,
@@ -57,7 +57,7 @@ pub enum Stepped {
     Compared {
         /// All quantities.
         measured: Vec<Measured>,
-        /// What makes the sides differ where they do.
+        /// The cause of a difference between the sides.
         why: Why,
         /// Contacts.
         contacts: usize,
@@ -66,12 +66,12 @@ pub enum Stepped {
     },
 }
 
-/// What makes the sides differ.
+/// The cause of a difference.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub enum Why {
-    /// Nothing that MuJoCo does by itself.
+    /// No behavior of MuJoCo itself.
     Ours,
-    /// MuJoCo jumps as far by itself, when the last bits of positions and velocities change.
+    /// MuJoCo itself jumps as far when the last bits of positions and velocities change.
     Jump,
     /// Conjugate gradients end at their limit of iterations, before the minimum, from the same rows: rounding errors have grown in each.
     Cut,
@@ -109,7 +109,7 @@ impl Sides {
         }
     }
 
-    /// Puts both sides beside each other.
+    /// Compares both sides.
     pub fn new(model: Arc<Model>, mut simulation: Simulation) -> Self {
         let condition = match simulation.try_forward() {
             Ok(()) => scaled_condition(&simulation.full_inertia(), model.nv),
@@ -190,7 +190,7 @@ impl Sides {
         }
         let (contacts, rows) = (theirs.ncon(), theirs.nefc());
         if let Err(e) = ours {
-            // MuJoCo looks for these at the start of the next step
+            // MuJoCo checks these at the start of the next step
             let beyond = |values: &[f64]| values.iter().any(|v| v.abs() > 1e10);
             if beyond(theirs.qpos()) || beyond(theirs.qvel()) {
                 return Stepped::Diverged;
@@ -228,7 +228,7 @@ impl Sides {
         state
     }
 
-    /// Steps MuJoCo from a state, and measures what it computes there beside ours, where that is given; nothing where it diverges.
+    /// Steps MuJoCo from a state, and measures its results against ours, if given; `None` if it diverges.
     fn advance(&mut self, start: &State, first: Option<&State>) -> Option<Option<Vec<Measured>>> {
         let mut computed = None;
         if let Some(first) = first {
@@ -241,7 +241,7 @@ impl Sides {
         self.step_mujoco(start).then_some(computed)
     }
 
-    /// Tells whether rows of either side have hardly any regularisation, or a Jacobian of rounding errors.
+    /// Returns whether rows of either side have hardly any regularisation, or a Jacobian of rounding errors.
     fn has_noisy_rows(&self, state: &State) -> bool {
         let rounding = |rate: f64| rate > 0.0 && rate < RATE;
         let ours = (0..state.efc_rows().count()).filter_map(|row| self.engine.efc_j(state, row));
@@ -250,7 +250,7 @@ impl Sides {
             || ours.map(|row| max_abs(&row, &vec![0.0; row.len()])).any(rounding)
     }
 
-    /// Measures a step of both sides; what was computed at its start counts, where it is given, and then where it leads.
+    /// Measures a step of both sides: the quantities at its start, if given, and its result.
     fn measured(&self, computed: Option<Vec<Measured>>, state: &State) -> Vec<Measured> {
         let Some(mut measured) = computed else {
             return measure(&self.model, state, &self.simulation);
@@ -262,7 +262,7 @@ impl Sides {
         measured
     }
 
-    /// Tells whether nothing is wrong but what follows from conjugate gradients that end at their limit of iterations.
+    /// Returns whether all differences follow from conjugate gradients that end at their limit of iterations.
     fn is_cut(&self, wrong: &[Measured]) -> bool {
         let opt = &self.model.opt;
         let follows = |m: &Measured| [QACC, QVEL, QPOS, "sensordata", "steps"].contains(&m.quantity);
@@ -271,8 +271,8 @@ impl Sides {
             && wrong.iter().all(follows)
     }
 
-    /// Steps MuJoCo from a state of ours; returns whether it neither gave up nor warned, nor will at the beginning of the next
-    /// step, where it looks at positions and velocities.
+    /// Steps MuJoCo from a state of ours. Returns whether it neither gave up nor warned, nor will at the start of the next step, where it
+    /// checks positions and velocities.
     pub fn step_mujoco(&mut self, start: &State) -> bool {
         self.simulation.reset();
         self.simulation.set_state(&self.model, start);
@@ -281,7 +281,7 @@ impl Sides {
         stepped && next.all(|v| v.abs() <= MAX_VALUE)
     }
 
-    /// Tells whether MuJoCo is as far from itself, when the last bits of positions and velocities change, as ours is from it: then the
+    /// Returns whether MuJoCo is as far from itself, when the last bits of positions and velocities change, as ours is from it. Then the
     /// geometry of a contact jumps there, or the solver stops elsewhere.
     fn jumps(&mut self, start: &State, wrong: &[Measured]) -> bool {
         let qacc = self.simulation.qacc().to_vec();
@@ -314,7 +314,7 @@ impl Sides {
     }
 }
 
-/// Tells whether what MuJoCo computes of an inertia at `qpos0` is more than rounding errors.
+/// Returns whether MuJoCo's results from an inertia at `qpos0` are more than rounding errors.
 fn sound(mut simulation: Simulation) -> bool {
     let nv = simulation.size("nv");
     let weights = simulation.model_array("dof_invweight0").unwrap_or_default();
@@ -354,7 +354,7 @@ pub fn describe_state(model: &Arc<Model>, recipe: &Recipe) -> String {
         .join("; ")
 }
 
-/// Tells whether a contact moved.
+/// Returns whether a contact moved.
 fn differ(a: &Contact, b: &Contact) -> bool {
     a.geom != b.geom
         || (a.dist - b.dist).abs() > 1e-9

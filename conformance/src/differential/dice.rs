@@ -4,7 +4,7 @@ use fastrand::Rng;
 
 /// A seeded source of values for attributes.
 pub struct Dice {
-    /// Where all chance comes from.
+    /// The source of all random choices.
     pub rng: Rng,
     /// A radian in the unit of the attribute that is drawn.
     pub angle: f64,
@@ -70,7 +70,7 @@ impl Dice {
         numbers(&ends)
     }
 
-    /// Writes two bounds, of which one is at times infinite.
+    /// Writes two bounds, one of which is sometimes infinite.
     pub fn bounds(&mut self, size: f64) -> String {
         let range = self.range(size);
         match (self.rng.u8(..40), range.split_once(' ')) {
@@ -151,7 +151,7 @@ impl Dice {
         numbers(&all[..n])
     }
 
-    /// Writes an inertia matrix, that of some points.
+    /// Writes the inertia matrix of some points.
     pub fn full_inertia(&mut self) -> String {
         let mut sum = [0.0; 6];
         for _ in 0..4 {

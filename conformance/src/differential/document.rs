@@ -21,11 +21,11 @@ struct JointName {
     scalar: bool,
     /// Whether it is a ball joint.
     ball: bool,
-    /// Whether it has a limit of its own.
+    /// Whether it has its own limit.
     limited: bool,
 }
 
-/// Tells whether a joint or a tendon gives itself a limit.
+/// Returns whether a joint or a tendon has its own limit.
 fn has_limit(node: &Node) -> bool {
     node.get("range").is_some() && node.get("limited") != Some("false")
 }
@@ -37,7 +37,7 @@ struct Writer<'a> {
     /// A radian in the unit of the document.
     radian: f64,
     autolimits: bool,
-    /// Whether there are default classes, whose poses are not places for `fromto`.
+    /// Whether there are default classes, whose poses exclude `fromto`.
     defaults: bool,
     classes: Vec<String>,
     bodies: Vec<String>,
@@ -51,7 +51,7 @@ struct Writer<'a> {
     hfield: Option<Node>,
     /// Meshes, with the elements that define them.
     meshes: Vec<Node>,
-    /// Whether there are copies, beside which MuJoCo multiplies sensors of nothing.
+    /// Whether there are copies, beside which MuJoCo multiplies sensors without an object.
     copies: bool,
     tendons: Vec<String>,
     limited_tendons: Vec<String>,
@@ -149,8 +149,8 @@ impl Writer<'_> {
         root
     }
 
-    /// Makes up a name. It ends in a letter: MuJoCo takes what stands beside a `<replicate>` for its contents where a name is another one with
-    /// the number of a copy behind it.
+    /// Generates a name. It ends in a letter: beside a `<replicate>`, MuJoCo takes an element for a copy if its name is another one
+    /// followed by the number of a copy.
     fn name(&mut self, kind: &str) -> String {
         self.named += 1;
         format!("{kind}{}n", self.named)
@@ -317,7 +317,7 @@ impl Writer<'_> {
         parent.children.push(frame);
     }
 
-    /// Puts some of what a body holds into a frame, at times into frames in each other.
+    /// Moves some of a body's contents into a frame, sometimes into nested frames.
     fn frame(&mut self, body: &mut Node) {
         if body.children.is_empty() || self.dice.chance(0.85) {
             return;

@@ -11,13 +11,13 @@ use super::rules::{How, RIVALS, RULES, how, is_without_physics};
 pub struct Attribute {
     /// Its name.
     pub name: &'static str,
-    /// How it is drawn.
+    /// The way of drawing its values.
     pub how: How,
     /// Its words, for one that has words.
     pub words: Vec<String>,
     /// Whether its numbers may be infinite.
     pub infinite: bool,
-    /// Whether a default class may give it.
+    /// Whether a default class may set it.
     pub in_default: bool,
 }
 
@@ -26,7 +26,7 @@ pub struct Language {
     elements: Vec<(String, Vec<Attribute>)>,
 }
 
-/// Returns the words that an attribute may say; nothing for one that holds something else.
+/// Returns the words of an attribute; `None` for attributes with other values.
 fn words(info: &AttributeInfo) -> Vec<String> {
     let word = |text: &str| !text.is_empty() && !text.contains(' ') && !["text", "numbers"].contains(&text);
     let all: Vec<String> = info.values.split(", ").map(str::to_owned).collect();
@@ -105,7 +105,7 @@ impl Language {
         found.map_or(&[], |(_, attributes)| attributes)
     }
 
-    /// Draws the attributes of an element that it does not have yet; in a default class, those that may stand there.
+    /// Draws the missing attributes of an element; in a default class, only those allowed there.
     pub fn dress(&self, node: &mut Node, path: &str, in_default: bool, dice: &mut Dice) {
         let mut attributes: Vec<&Attribute> = self.attributes(path).iter().collect();
         dice.rng.shuffle(&mut attributes);

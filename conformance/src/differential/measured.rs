@@ -11,7 +11,7 @@ use crate::mujoco::{Contact, Simulation};
 /// Accelerations, measured relative to the largest.
 pub(super) const QACC: &str = "qacc";
 
-/// Where a step leads.
+/// The result of a step.
 pub(super) const QVEL: &str = "qvel after the step";
 pub(super) const QPOS: &str = "qpos after the step";
 
@@ -20,7 +20,7 @@ pub(super) const QPOS: &str = "qpos after the step";
 pub struct Measured {
     /// Name of the quantity that was compared.
     pub quantity: &'static str,
-    /// How far ours is from MuJoCo's.
+    /// The distance of our result from MuJoCo's.
     pub error: f64,
     /// The error up to which both agree.
     pub limit: f64,
@@ -41,17 +41,17 @@ impl Measured {
         }
     }
 
-    /// Says that both sides take a document.
+    /// Records that both sides take a document.
     pub fn taken() -> Self {
         Self::new("taken", 0.0, 0.0, "")
     }
 
-    /// Tells whether both sides agree.
+    /// Returns whether both sides agree.
     pub fn agrees(&self) -> bool {
         self.error <= self.limit
     }
 
-    /// Returns another measure in place of this one, where both sides agree by that one alone.
+    /// Returns another measure instead of this one, if both sides agree only by that one.
     fn or(self, other: Option<Self>) -> Self {
         match other {
             Some(other) if !self.agrees() && other.agrees() => other,
@@ -59,7 +59,7 @@ impl Measured {
         }
     }
 
-    /// Says that both sides agree where they are `apart` by no more than what they are allowed to be.
+    /// Accepts a difference of at most `allowed`.
     fn or_apart(self, apart: f64, allowed: f64) -> Self {
         if apart <= allowed && !self.agrees() {
             Self {
@@ -160,7 +160,7 @@ fn acceleration(state: &State, theirs: &Simulation, limit: f64) -> Measured {
     qacc
 }
 
-/// Torques are differences of what acts on the bodies and what they exert on each other, which may be much greater.
+/// Torques are differences between external forces and the forces of bodies on each other, which may be much greater.
 fn sensors(state: &State, theirs: &Simulation, limit: f64) -> Measured {
     let wrenches = state.cfrc_int.iter().chain(&state.cfrc_ext).flatten();
     let wrench = wrenches.fold(0.0_f64, |m, v| m.max(v.abs()));

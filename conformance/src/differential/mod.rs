@@ -37,12 +37,12 @@ use table::Tally;
 /// States of each document.
 const STATES: u64 = 3;
 
-/// Returns the seed that stands for a version, so that each release is tested on documents of its own.
+/// Returns the seed for a version, so that each release is tested on documents of its own.
 pub fn seed_of(version: &str) -> u64 {
     hash(0, version)
 }
 
-/// What counts as a document at which MuJoCo fell.
+/// The count of documents at which MuJoCo crashed.
 const FELL: &str = "documents at which MuJoCo falls (invalid access to memory)";
 
 /// Compares documents `0..count` of a seed, in threads.
@@ -76,7 +76,7 @@ pub fn run_in_processes(count: u64, child: impl Fn(&Range<u64>) -> Command + Syn
     })))
 }
 
-/// Compares the documents of a range in this process, and tells the one that started it.
+/// Compares the documents of a range in this process, and reports to its parent.
 ///
 /// # Errors
 /// Attributes without a rule, a closed output.

@@ -114,7 +114,7 @@ impl Node {
     /// elements too.
     ///
     /// # Errors
-    /// The text is not such a document; the message quotes what stands where something else is expected.
+    /// The text is not such a document. The message quotes the unexpected part.
     pub fn parse(text: &str) -> Result<Self, String> {
         let mut open: Vec<Node> = Vec::new();
         let mut rest = text;

@@ -44,7 +44,7 @@ fn differs(api: &'static Mujoco, document: &Node, recipe: Option<&Recipe>, quant
     found.map(|m| (m.error, m.place))
 }
 
-/// Smaller documents that are tried for a finding: enough for all but those with hundreds of attributes.
+/// Maximum number of smaller documents tried for a finding, enough for all except those with hundreds of attributes.
 pub const ATTEMPTS: usize = 600;
 
 /// Takes away what is not needed for the difference, until nothing more can go or [`ATTEMPTS`] smaller documents were tried.

@@ -1,5 +1,5 @@
-//! How the values of every attribute are drawn. A line for each attribute of the loader's tables: a test fails where one is
-//! missing, and where one changes physics and is never drawn.
+//! Rules for drawing the values of attributes, with a line for each attribute of the loader's tables. A test fails if one is missing, or
+//! if one changes physics and is never drawn.
 
 mod actuators;
 mod bodies;
@@ -14,7 +14,7 @@ use relations::*;
 use sensors::*;
 use whole::*;
 
-/// How an attribute gets its values.
+/// The source of an attribute's values.
 #[derive(Clone, Copy)]
 pub enum How {
     /// It changes no physics: names, colours, sizes of what is only drawn.
@@ -30,10 +30,10 @@ pub enum How {
 
 use How::{Drawn, Nothing, Placed, Word};
 
-/// How one attribute gets its values.
+/// The source of one attribute's values.
 pub type Rule = (&'static str, How);
 
-/// Attributes of which an element may have one at most.
+/// Attributes that exclude each other.
 pub const RIVALS: [&[&str]; 11] = [
     &["quat", "axisangle", "xyaxes", "zaxis", "euler", "fromto"],
     &["pos", "fromto"],
@@ -204,12 +204,12 @@ pub const RULES: &[(&str, &[&[Rule]])] = &[
     ("sensor/user", &[OF_USER, UNIT_SENSOR]),
 ];
 
-/// Elements that are compared in `conformance/data/composed`: they need other documents, or stand for whole bodies.
+/// Elements that are compared in `conformance/data/composed`: they need other documents, or represent whole bodies.
 fn is_composed(path: &str) -> bool {
     path == "asset/model" || path.split('/').any(|name| name == "attach" || name == "composite")
 }
 
-/// Tells whether an element, or the section that it stands in, is said to change no physics, or is compared elsewhere.
+/// Returns whether an element, or its section, is marked as changing no physics, or is compared elsewhere.
 pub fn is_without_physics(path: &str) -> bool {
     if is_composed(path) {
         return true;

@@ -1,5 +1,5 @@
-//! One document for each attribute and value that changes physics: a document with all elements, in which one of them gets
-//! the attribute, and the same by a default class where the attribute may stand in one.
+//! Documents for each attribute and value that changes physics: a document with all elements, in which one of them gets the attribute,
+//! and the same by a default class if the attribute is allowed there.
 
 use super::compare::{Sides, Stepped, Taken, Why};
 use super::dice::Dice;
@@ -31,13 +31,13 @@ pub struct Single {
     pub document: Node,
 }
 
-/// How a document compares.
+/// The comparison of a document.
 pub struct Outcome {
     /// Quantities that differ between the sides.
     pub differences: Vec<Measured>,
     /// Whether MuJoCo takes it.
     pub taken: bool,
-    /// Whether MuJoCo's model or its step is another one than without the attribute.
+    /// Whether MuJoCo's model or its step differs from those without the attribute.
     pub matters: bool,
     /// States compared.
     pub states: usize,
@@ -86,7 +86,7 @@ fn unmarked(mut base: Node) -> Node {
     base
 }
 
-/// Sets an attribute in place of its rivals.
+/// Sets an attribute and removes its rivals.
 fn set(node: &mut Node, name: &str, value: &str) {
     for group in RIVALS.iter().filter(|group| group.contains(&name)) {
         group.iter().for_each(|rival| node.unset(rival));

@@ -1,4 +1,4 @@
-//! How far apart two solvers may be that both stop by the same rule.
+//! Tolerances between two solvers that stop by the same rule.
 //!
 //! Newton's method stops where a step lowers the cost by less than `E = tolerance * meaninertia * nv`. The cost is at least as
 //! curved as the inertia `M`, so accelerations `d` away from its minimum cost at least `d' M d / 2` more than that. The steps that

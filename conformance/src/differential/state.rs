@@ -1,5 +1,5 @@
-//! Random states, each value of which follows from a seed and the name of what it belongs to: when a document loses an
-//! element, the rest stays where it was.
+//! Random states. Each value follows from a seed and the name of its element, so that when a document loses an element, the others keep
+//! theirs.
 
 use babybench::Model;
 use babybench::physics::State;

@@ -67,7 +67,7 @@ impl Tally {
         }
     }
 
-    /// Puts tallies together.
+    /// Merges tallies.
     pub fn of(parts: impl IntoIterator<Item = Self>) -> Self {
         let mut all = Self::default();
         parts.into_iter().for_each(|part| all.append(part));

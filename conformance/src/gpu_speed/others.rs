@@ -1,4 +1,4 @@
-//! What `scripts/gpu_eyes.py` measures.
+//! The measurements of `scripts/gpu_eyes.py`.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -10,7 +10,7 @@ use serde_json::Value;
 use super::Row;
 use crate::python;
 
-/// How the script names MuJoCo's own renderer.
+/// The script's name for MuJoCo's own renderer.
 pub const EGL: &str = "MuJoCo, EGL";
 
 /// Measures another renderer.

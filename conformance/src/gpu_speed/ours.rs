@@ -1,4 +1,4 @@
-//! What our renderers take.
+//! The times of our renderers.
 
 use std::path::PathBuf;
 use std::rc::Rc;
@@ -122,7 +122,7 @@ impl Seen {
     }
 }
 
-/// Returns what the eyes of so many environments see.
+/// Returns the requests of the eyes of many environments.
 fn eyes(states: &[State], cameras: [usize; 2], environments: usize) -> Vec<RenderRequest<'_>> {
     let request = |k: usize| {
         let poses = Poses::from(&states[k / 2 % states.len()]);

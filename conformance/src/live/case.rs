@@ -118,7 +118,7 @@ impl Case {
         all
     }
 
-    /// Writes the top document and the embedded assets, as they are, to a temporary folder for MuJoCo.
+    /// Writes the top document and the unchanged embedded assets to a temporary folder for MuJoCo.
     fn with_files<T>(&self, load: impl FnOnce(&str) -> Result<T, String>) -> Result<T, String> {
         let folder = tempfile::tempdir().map_err(|e| format!("no temporary folder: {e}"))?;
         let xml = scene_xml(&self.config);

@@ -3,7 +3,7 @@
 use babybench::Model;
 use fastrand::Rng;
 
-/// The way MIMo is moved, and how the episode begins.
+/// The way MIMo is moved, and the start of the episode.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Motion {
     /// Controls 0.
@@ -69,7 +69,7 @@ impl Drive {
         }
     }
 
-    /// Returns the random number generator, for whatever else is random in the episode.
+    /// Returns the random number generator, for other random choices of the episode.
     pub fn rng(&mut self) -> &mut Rng {
         &mut self.rng
     }

@@ -30,7 +30,7 @@ impl Episode {
             .collect()
     }
 
-    /// Locks of the episode: in every third none, in every third the feet and eyes, else random joints at random angles.
+    /// Locks of the episode: in every third none, in every third the feet and eyes, otherwise random joints at random angles.
     pub fn params(&self, case: &Case, drive: &mut Drive) -> Shared<Params> {
         let mut params = case.params.clone();
         let m = &case.model;

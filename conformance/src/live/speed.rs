@@ -45,8 +45,8 @@ pub fn quartiles(mut values: Vec<f64>) -> [f64; 3] {
     })
 }
 
-/// Measures `batches` batches. MuJoCo runs with the model's own options but for its sensors, which are off: both sides do
-/// physics only. Before each batch both are set to the same state; order within a batch alternates.
+/// Measures `batches` batches. MuJoCo runs with the model's own options except for its sensors, which are off, so both sides do physics
+/// only. Before each batch both are set to the same state. The order within a batch alternates.
 ///
 /// # Errors
 /// MuJoCo does not load the scene; the engine fails.
@@ -111,7 +111,7 @@ pub fn measure(
     })
 }
 
-/// Creates the controls of a batch, each of which goes on from the one before.
+/// Creates the controls of a batch. Each continues from the previous one.
 fn controls(drive: &mut Drive, batch: usize, ctrl: &mut [Vec<f64>]) {
     for k in 0..BATCH {
         if k > 0 {
@@ -124,7 +124,7 @@ fn controls(drive: &mut Drive, batch: usize, ctrl: &mut [Vec<f64>]) {
     }
 }
 
-/// Copies positions, velocities, activations and warm start from MuJoCo, for our engine to go on from.
+/// Copies positions, velocities, activations and warm start from MuJoCo to our engine.
 pub fn copy_motion(simulation: &Simulation, state: &mut State) {
     state.qpos.copy_from_slice(simulation.qpos());
     state.qvel.copy_from_slice(simulation.qvel());

@@ -37,14 +37,14 @@ pub struct Spread {
 }
 
 impl Spread {
-    /// Tells whether our runs are on average no farther than MuJoCo's farthest.
+    /// Returns whether our runs are on average no farther than MuJoCo's farthest.
     pub fn inside(&self) -> bool {
         let mean = self.ours.iter().sum::<f64>() / self.ours.len() as f64;
         mean <= self.mujoco.iter().fold(0.0, |a: f64, &b| a.max(b))
     }
 }
 
-/// Who runs.
+/// The engine.
 #[derive(Clone, Copy)]
 enum Who {
     Ours,

@@ -54,8 +54,8 @@ pub struct Mujoco {
 /// Swallows warnings, which MuJoCo would otherwise write to a file in the current directory.
 unsafe extern "C" fn ignore(_: *const c_char) {}
 
-/// Leaves MuJoCo where it gives up, which would otherwise end the process: its frames hold nothing that needs to be released but
-/// memory of the data, which a reset takes back.
+/// Leaves MuJoCo when it gives up, which would otherwise end the process. Its frames hold nothing that needs to be released except memory
+/// of the data, which a reset reclaims.
 unsafe extern "C-unwind" fn give_up(message: *const c_char) {
     // SAFETY: MuJoCo's messages end with 0.
     let message = unsafe { CStr::from_ptr(message) }.to_string_lossy().into_owned();
@@ -120,7 +120,7 @@ impl Mujoco {
 
     /// Compiles the document `path` of `files`, which are names and contents.
     pub(super) fn compile(&self, path: &str, files: &[(&str, &[u8])]) -> Result<Handle, String> {
-        // an `mjVFS` is one pointer; there is room for more
+        // an `mjVFS` is one pointer; this is larger
         let mut vfs = [0_usize; 16];
         let vfs: Handle = vfs.as_mut_ptr().cast();
         // SAFETY: the file system is initialised before and released after use; names end with 0; lengths are those of the buffers.

@@ -1,8 +1,7 @@
 //! The real MuJoCo, loaded at run time: nothing of it is needed to build.
 //!
-//! `conformance/scripts/fetch_mujoco.sh` puts releases into `target/mujoco/VERSION/`. [`Simulation`] is release 3.3.0 with
-//! all its arrays, by the offsets that `scripts/mujoco_offsets.py` took from its headers; [`Release`] is any release, of
-//! which only the state is looked at.
+//! `conformance/scripts/fetch_mujoco.sh` puts releases into `target/mujoco/VERSION/`. [`Simulation`] is release 3.3.0 with all its
+//! arrays, by the offsets that `scripts/mujoco_offsets.py` took from its headers. [`Release`] is any release, and reads only the state.
 
 mod api;
 pub mod layout;
@@ -71,7 +70,7 @@ pub fn reference() -> Result<&'static Mujoco, String> {
     LOADED.get_or_init(load).as_ref().map_err(String::clone)
 }
 
-/// MuJoCo 3.3.0, fetched where it is missing.
+/// MuJoCo 3.3.0, fetched if it is missing.
 pub const MUJOCO: Need = Need::new("MuJoCo", Some(REQUIRED), || {
     set_up("fetch_mujoco.sh", &[], &library(REFERENCE))?;
     reference().map(drop)
@@ -80,7 +79,7 @@ pub const MUJOCO: Need = Need::new("MuJoCo", Some(REQUIRED), || {
 /// Returns MuJoCo 3.3.0 to a test that has the need [`MUJOCO`].
 ///
 /// # Panics
-/// When it is missing.
+/// If it is missing.
 pub fn needed() -> &'static Mujoco {
     reference().unwrap_or_else(|e| panic!("{e}"))
 }

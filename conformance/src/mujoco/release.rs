@@ -1,4 +1,4 @@
-//! Any release of MuJoCo, of which only the state is looked at, so that no offsets are needed.
+//! Any release of MuJoCo. Only its state is read, so no offsets are needed.
 
 use super::api::{Handle, Mujoco};
 use super::{folder, library};

@@ -144,7 +144,7 @@ unsafe fn array<'a, T>(base: Handle, at: usize, n: usize) -> &'a [T] {
 /// Returns the `n` values behind the pointer at `base + at`, to write to.
 ///
 /// # Safety
-/// As [`array`], and nothing else may refer to the values.
+/// As [`array`], without other references to the values.
 unsafe fn array_mut<'a, T>(base: Handle, at: usize, n: usize) -> &'a mut [T] {
     if n == 0 {
         return &mut [];
@@ -192,7 +192,7 @@ impl Simulation {
     /// Returns a size of the model, such as `nq`.
     ///
     /// # Panics
-    /// There is no such size.
+    /// The size does not exist.
     pub fn size(&self, name: &str) -> usize {
         self.known_size(name)
             .unwrap_or_else(|| panic!("mjModel has no size {name}"))

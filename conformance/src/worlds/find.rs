@@ -7,13 +7,13 @@ use crate::differential::state::hash;
 
 /// A document that no other one includes.
 pub struct Document {
-    /// The folder that was asked for.
+    /// The requested folder.
     pub folder: PathBuf,
     /// Its path in that folder, with slashes.
     pub path: String,
 }
 
-/// Lists the documents of MJCF under some folders, but for those that others include, and for copies.
+/// Lists the MJCF documents under some folders, except those that others include, and copies.
 ///
 /// # Errors
 /// A folder or a file that cannot be read.

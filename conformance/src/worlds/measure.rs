@@ -31,10 +31,10 @@ const BATCH: usize = 25;
 /// Times that MuJoCo is stepped from nearly the same state where the sides differ.
 const NUDGES: usize = 8;
 
-/// Error of the acceleration above which MuJoCo's own spread is asked for.
+/// Error of the acceleration above which MuJoCo's own spread is measured.
 pub const LARGE: f64 = 1e-6;
 
-/// How far a rollout is from MuJoCo's.
+/// The distance of a rollout from MuJoCo's.
 #[derive(Clone, Copy, Debug, Deserialize, Serialize)]
 pub struct Rollout {
     /// Largest difference of the coordinates after the last step.
@@ -50,10 +50,10 @@ pub struct Rollout {
 pub struct Figures {
     /// Degrees of freedom.
     pub nv: usize,
-    /// How far the compiled array that differs most is apart, in units of its limit.
+    /// The largest difference of a compiled array, in units of its limit.
     #[serde(deserialize_with = "or_nan")]
     pub arrays: f64,
-    /// Which that is, and where.
+    /// That array, and the place of the difference.
     pub farthest_array: String,
     /// States compared.
     pub states: usize,
@@ -72,12 +72,12 @@ pub struct Figures {
     /// CPU time of a step over MuJoCo's: median over batches.
     #[serde(deserialize_with = "or_nan")]
     pub cpu: f64,
-    /// Why our step failed, where it did.
+    /// The error of our step, if it failed.
     pub failure: Option<String>,
 }
 
 impl Figures {
-    /// Tells whether both sides mean the same by the document.
+    /// Returns whether both sides agree about the document.
     pub fn agrees(&self) -> bool {
         self.arrays <= 1.0 && self.other_contacts == 0 && self.unexplained <= LARGE && self.failure.is_none()
     }

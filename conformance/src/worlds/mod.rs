@@ -42,7 +42,7 @@ pub enum Outcome {
 
 /// A document beside MuJoCo.
 pub struct World {
-    /// The folder that was asked for.
+    /// The requested folder.
     pub folder: PathBuf,
     /// Its path in that folder.
     pub path: String,
@@ -96,7 +96,7 @@ pub fn compare_in_processes(
     Ok(counted(documents, outcomes))
 }
 
-/// Compares a range of the documents under some folders in this process, and tells the one that started it.
+/// Compares a range of the documents under some folders in this process, and reports to its parent.
 ///
 /// # Errors
 /// A folder that cannot be read, a closed output.
@@ -108,7 +108,7 @@ pub fn in_child(api: &'static Mujoco, folders: &[PathBuf], range: Range<u64>) ->
     })
 }
 
-/// Puts documents and what came out together, but for those that count for neither side.
+/// Combines documents and results, except those that count for neither side.
 fn counted(documents: Vec<Document>, outcomes: impl IntoIterator<Item = Outcome>) -> Vec<World> {
     let all = documents.into_iter().zip(outcomes).map(|(document, outcome)| World {
         folder: document.folder,

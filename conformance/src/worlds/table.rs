@@ -30,7 +30,7 @@ fn short(value: f64) -> String {
     }
 }
 
-/// Writes the tables of totals, documents at which MuJoCo falls, the tables of documents that both take, and of reasons.
+/// Writes the tables of totals, documents at which MuJoCo crashes, the tables of documents that both take, and of reasons.
 pub fn text(worlds: &[World]) -> String {
     totals(worlds) + &fallen(worlds) + &taken(worlds) + &reasons(worlds)
 }
@@ -188,7 +188,7 @@ pub fn json(worlds: &[World]) -> Value {
     Value::Array(worlds.iter().map(one).collect())
 }
 
-/// Counts the documents by which both sides do not mean the same, or that ours alone takes.
+/// Counts the documents on which the sides disagree, or that only ours takes.
 pub fn faults(worlds: &[World]) -> usize {
     let fault = |world: &&World| match &world.outcome {
         Outcome::OursAlone(_) => true,

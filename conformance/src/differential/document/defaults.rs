@@ -1,4 +1,4 @@
-//! Default classes, and what they decide.
+//! Default classes, and their effects.
 
 use super::*;
 
@@ -52,7 +52,7 @@ impl Writer<'_> {
         class
     }
 
-    /// Says of each range whether it limits, where MuJoCo asks for that.
+    /// Sets for each range whether it limits, if MuJoCo requires that.
     pub(super) fn decide_limits(&mut self, node: &mut Node) {
         const RANGES: [(&str, &str); 6] = [
             ("range", "limited"),

@@ -42,7 +42,7 @@ pub(super) const ADHESION: &[Rule] = &[
         Drawn(1.0, |d| format!("{} {}", d.log(0.01, 0.3), d.log(0.5, 2.0))),
     ),
 ];
-/// Targets of which the motors of the document of [`super::single`] have one each.
+/// Targets, one for each of the motors of the document of [`super::single`].
 pub(super) const SLIDER_CRANK: &[Rule] = &[
     ("cranksite", Placed(&["tip"])),
     ("slidersite", Placed(&["skin", "ground"])),
@@ -112,7 +112,7 @@ pub(super) const MUSCLE: &[Rule] = &[
     ("fvmax", Drawn(0.3, |d| d.log(0.9, 2.0))),
 ];
 
-/// Writes one to ten parameters of an actuator, of which three have a meaning.
+/// Writes one to ten parameters of an actuator, three of which have a meaning.
 fn parameters(d: &mut Dice, size: f64) -> String {
     let n = d.pick(&[1, 2, 3, 3, 3, 10]);
     d.reals(n, size)

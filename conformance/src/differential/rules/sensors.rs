@@ -9,7 +9,7 @@ pub(super) const SENSOR: &[Rule] = &[
     ("noise", Nothing),
     ("cutoff", Drawn(0.3, |d| d.log(1e-4, 5.0))),
 ];
-/// Sensors whose values have no cutoff, and the clock, which stands at 0 where it is compared.
+/// Sensors whose values have no cutoff, and the clock, which is 0 when compared.
 pub(super) const UNIT_SENSOR: &[Rule] = &[
     ("name", Nothing),
     ("user", Nothing),
