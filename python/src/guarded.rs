@@ -1,19 +1,18 @@
-//! A value for one thread at a time, until it is closed. Other threads get an error immediately: a thread that waited would hold Python's
-//! lock, which the first thread may need.
+//! Values for one thread at a time. Other threads get an error immediately: a thread that waited would hold Python's lock, which the
+//! first thread may need.
 
 use std::sync::{Mutex, MutexGuard, TryLockError};
 
 use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
 
-/// A value that one thread at a time uses, until it is closed. Whoever comes meanwhile is refused at once: a thread that waited would
-/// hold Python's lock, for which the other may be waiting.
+/// A value for one thread at a time, until it is closed.
 pub struct Guarded<T> {
-    /// Nothing, once it is closed.
+    /// `None` once it is closed.
     inner: Mutex<Option<Box<T>>>,
-    /// Name that Python's users know it by.
+    /// Name for Python's users.
     name: &'static str,
-    /// Advice for a thread that comes meanwhile.
+    /// Advice for other threads.
     remedy: &'static str,
 }
 
