@@ -69,7 +69,7 @@ fn plain(blueprint: &Blueprint) -> Vec<Env> {
     (0..ENVS).map(make).collect()
 }
 
-/// Arrays in which a plain loop collects what environments observe.
+/// Arrays in which a plain loop collects the observations of environments.
 #[derive(Default)]
 struct Arrays {
     proprioception: Vec<f64>,

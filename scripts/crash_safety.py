@@ -89,7 +89,7 @@ def kill(folder, arguments, which, wait):
         said = program.communicate(timeout=60)[0].decode(errors="replace")
     except subprocess.TimeoutExpired:
         program.kill()
-        raise Fault(f"{arguments[0]} goes on after {which.name}") from None
+        raise Fault(f"{arguments[0]} continues after {which.name}") from None
     if "panicked" in said:
         raise Fault(said.strip())
     return program.returncode

@@ -190,7 +190,7 @@ class Env:
     def other_spaces(self) -> list[tuple[tuple[_Array, _Array], int]]:
         """Returns the bounds of an action of each other infant in the scene, and the length of his observation."""
     def act_other(self, index: int, action: npt.ArrayLike) -> None:
-        """Gives another infant an action, which holds until the next one or a reset."""
+        """Sets the action of another infant, which holds until the next one or a reset."""
     def observe_other(self, index: int) -> _Array:
         """Returns what another infant feels: angles (rad), velocities (rad/s), the head's motion, torques (N m)."""
     def set_goal(self, desired: npt.ArrayLike) -> dict[str, _Array]:
@@ -287,7 +287,7 @@ class Env:
     def touched(self) -> tuple[npt.NDArray[np.int64], npt.NDArray[np.float32]]:
         """Returns sparse touch: the sensors that contacts reach, ascending (K), and their values, (K, 1 or 3), N."""
     def touch_contacts(self) -> dict[str, _Array]:
-        """Returns the contacts with skin, an entry for each side that feels.
+        """Returns the contacts with skin, an entry for each side with sensors.
 
         Entries: ``contact`` (index in :meth:`contacts`), ``body``, ``geom``, ``other`` (geom), ``normal`` (N), ``force``
         and ``point`` (world, N and m), ``force_body`` and ``point_body`` (frame of the body).
@@ -330,7 +330,7 @@ class View:
     def watched(self) -> bool:
         """Whether a page was open within the last two seconds."""
     def attend(self, env: Env) -> str:
-        """Shows the environment to those who ask and says what is next: ``step``, ``reset``, or ``wait`` after 0.05 s."""
+        """Answers requests for pictures and returns the next action: ``step``, ``reset``, or ``wait`` after 0.05 s."""
     def stepped(self, env: Env, seconds: float) -> None:
         """Reports a step of this many simulated seconds."""
     def restarted(self, env: Env) -> None:

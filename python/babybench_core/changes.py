@@ -74,7 +74,7 @@ def of_options(options: Union[Mapping[str, Any], None]) -> Any:
 
 
 def of_vector(wanted: Any, count: int) -> list[Any]:
-    """Returns the changes of each environment of a vector: one mapping for all, or a list with one, or nothing, for each.
+    """Returns the changes of each environment of a vector, from one mapping for all or a list with one or ``None`` for each.
 
     Raises:
         TypeError: Something else.

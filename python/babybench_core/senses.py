@@ -168,7 +168,7 @@ class Touch(TouchLayout):
         return self._core.touch_contacts()
 
     def world_positions(self) -> Floats:
-        """Returns where all sensors are now, (sensors, 3), m, in the world."""
+        """Returns the current positions of all sensors, (sensors, 3), m, in the world."""
         positions = np.concatenate([np.zeros((0, 3)), *(body["positions"] for body in self._layout)])
         frames = self._core.state_array("xmat").reshape(-1, 3, 3)[self.body_ids]
         origins: Floats = self._core.state_array("xpos")[self.body_ids]

@@ -101,7 +101,7 @@ class Posture(BasePolicy):
 
 
 class Trial:
-    """A posture, and how well each hand was seen in it, in the mean of the times that it was tried."""
+    """A posture, and the mean visibility of each hand over its trials."""
 
     def __init__(self, posture: np.ndarray, seen: np.ndarray) -> None:
         """Was tried once."""

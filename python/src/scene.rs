@@ -66,7 +66,7 @@ pub fn model_extras<'py>(py: Python<'py>, blueprint: &Bound<'py, Blueprint>) -> 
     extras(py, blueprint.get().inner.model())
 }
 
-/// Returns what [`model_extras`] does of any model.
+/// Returns the result of [`model_extras`] for any model.
 pub fn extras<'py>(py: Python<'py>, model: &Model) -> PyResult<Bound<'py, PyDict>> {
     let extras = PyDict::new(py);
     extras.set_item(

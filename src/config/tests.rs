@@ -1,4 +1,4 @@
-//! Tests of the configuration; one helper, [`check`], says what a text becomes: the keys that differ from the defaults,
+//! Tests of the configuration; one helper, [`check`], returns the result of a text: the keys that differ from the defaults,
 //! or the error.
 
 mod conflicts;

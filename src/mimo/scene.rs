@@ -219,7 +219,7 @@ pub fn build_scene(
 #[derive(Clone, Copy)]
 pub(super) struct Source<'a> {
     pub document: &'a str,
-    /// As which file of the assets it is read.
+    /// Its file name in the assets.
     pub path: &'a str,
     /// His face: the texture of the material of his head.
     face: FacialExpression,

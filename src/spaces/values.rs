@@ -22,7 +22,7 @@ macro_rules! numbers {
             $($(#[$doc])* $kind(&'a [$type]),)*
         }
 
-        /// Numbers of one of four types, to be written.
+        /// Numbers of one of four types, for writing.
         #[derive(Debug, PartialEq)]
         pub enum ValuesMut<'a> {
             $($(#[$doc])* $kind(&'a mut [$type]),)*
@@ -140,7 +140,7 @@ macro_rules! numbers {
                 }
             }
 
-            /// Returns the numbers, to be written.
+            /// Returns the numbers, for writing.
             pub fn values_mut(&mut self) -> ValuesMut<'_> {
                 match self {
                     $(Self::$kind(values) => ValuesMut::$kind(values),)*

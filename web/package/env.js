@@ -220,7 +220,7 @@ export class Env {
   }
 
   /**
-   * Brings what is drawn up to date, as at the start of the last physics step.
+   * Updates what is drawn to the start of the last physics step.
    * @returns {import("./types.js").Frame}
    */
   update() {

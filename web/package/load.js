@@ -4,7 +4,7 @@ import { refuse } from "./check.js";
 /** @typedef {string | URL | Request | Response | BufferSource | WebAssembly.Module} Source */
 
 /**
- * Finds the bytes of a module: what the caller hands over, or the file beside this one.
+ * Finds the bytes of a module: the caller's, or the file beside this one.
  * @param {Source | undefined} source
  * @param {URL} beside where the file is, unless the caller says otherwise
  * @returns {Promise<Request | Response | URL | BufferSource | WebAssembly.Module>}

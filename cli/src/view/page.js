@@ -11,7 +11,7 @@ const QUICK = 25;
 const HEAT = ["#8c175c", "#db294d", "#fa6b29", "#ffbf33", "#fff5b8"];
 const STRONG = 10;
 
-/** What people have done since the last question. */
+/** The visitor's actions since the last request. */
 let words = [];
 let turned = [0, 0];
 let moved = [0, 0];

@@ -1,11 +1,11 @@
-//! A spring between a point of a body and a place in the world, as stiff as the body is heavy: that of the page and of Python's window.
+//! A spring between a point of a body and a place in the world, with a stiffness proportional to the mass, for the page and for Python's window.
 
 use babybench::Env;
 use babybench::math::{Vec3, add, mat_t_vec, mat_vec, norm, scale, sub};
 
 /// The angular frequency of the pulled body, rad/s: stiffness is its square times the mass that the point feels.
 const STRENGTH: f64 = 12.0;
-/// The greatest force, in weights of what the point feels: a pointer far away must not throw the infant out of the room.
+/// The greatest force, in weights of the mass at the point, so that a distant pointer does not throw the infant out of the room.
 const MOST: f64 = 40.0;
 
 /// Pulls at a body of an environment, or at nothing.

@@ -20,7 +20,7 @@ const POINTS: usize = 4000;
 /// Depth behind the visible surface up to which a point is drawn, m.
 const BEHIND: f64 = 0.012;
 
-/// Everything that people have set, and what draws for them.
+/// The visitors' settings, and the renderer.
 pub struct Stage {
     title: String,
     /// Whether time is paused, and whether it pauses after one more step.

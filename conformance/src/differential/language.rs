@@ -13,7 +13,7 @@ pub struct Attribute {
     pub name: &'static str,
     /// The way of drawing its values.
     pub how: How,
-    /// Its words, for one that has words.
+    /// The words of an attribute that has words.
     pub words: Vec<String>,
     /// Whether its numbers may be infinite.
     pub infinite: bool,

@@ -183,7 +183,7 @@ impl Simulation {
         usize::try_from(n).unwrap_or(0)
     }
 
-    /// Returns a size of the model, such as `nq`; `None` when mjModel has none of that name.
+    /// Returns a size of the model, such as `nq`; `None` if mjModel has no size of that name.
     pub fn known_size(&self, name: &str) -> Option<usize> {
         let size = MODEL_SIZES.iter().find(|f| f.name == name)?;
         Some(self.number(Count::OfModel(size.at)))

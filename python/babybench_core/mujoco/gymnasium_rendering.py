@@ -81,7 +81,7 @@ class MujocoRenderer:
     ) -> None:
         """Takes the size of pictures, pixels, and the camera: a free one unless one of the model's is asked for."""
         if visual_options:
-            raise NotImplementedError("visual_options are not served: pictures show what MuJoCo shows by default")
+            raise NotImplementedError("visual_options are not supported: pictures show what MuJoCo shows by default")
         self.model, self.data = model, data
         self.viewer: OffScreenViewer | None = None
         self.default_cam_config = default_cam_config

@@ -184,7 +184,7 @@ class MjModel(Named):
     """The names of the arrays that can be written to."""
 
     def __init__(self) -> None:
-        """Refuses: models are made from documents."""
+        """Raises an error, because models are made from documents."""
         raise TypeError("make models with MjModel.from_xml_path(path) or MjModel.from_xml_string(text)")
 
     @classmethod

@@ -5,7 +5,7 @@ use crate::math::Vec3;
 /// A side of the body.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Side {
-    /// The middle: nothing is mirrored.
+    /// The middle, which is not mirrored.
     Middle,
     /// Given for the left; the right is its mirror image.
     Both,

@@ -102,7 +102,7 @@ pub(super) fn of_attribute(attribute: &[u8]) -> Numbers {
     Numbers { values, whole }
 }
 
-/// Returns what an operator makes without any input, if that is a short list of numbers: the value of a `Constant`.
+/// Returns the output of an operator without inputs, if it is a short list of numbers: the value of a `Constant`.
 pub(super) fn of_constant(node: &[u8]) -> Option<Numbers> {
     if parts(node, 4).first().copied() != Some(b"Constant") {
         return None;

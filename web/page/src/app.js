@@ -53,7 +53,7 @@ export class App {
     this.lastTick = 0;
     /** The last world that is being built, if one is. */
     this.turn = Promise.resolve();
-    /** Changes that wait for their world, the first of them first. */
+    /** Changes that wait for their world, in order. */
     /** @type {Settings[]} */
     this.asked = [];
     /** The picture of the MIMo beside the first. */
@@ -217,7 +217,7 @@ export class App {
   }
 
   /**
-   * Builds a world of these settings alone, without what was set before.
+   * Builds a world from these settings alone, without earlier ones.
    * @param {Settings} settings
    */
   begin(settings) {
@@ -418,7 +418,7 @@ export class App {
     this.notice(`${network.name} moves MIMo now. ${about}`);
   }
 
-  /** Lets the worker know what the state says about movement. */
+  /** Sends the worker the state's settings of movement. */
   move() {
     const { policy, held, vigour, speed, seed } = this.state;
     this.world.tell("move", { policy, held, vigour, speed, seed });

@@ -149,7 +149,7 @@ function drops(app) {
 }
 
 /**
- * Keeps the page's files in the browser, and says when there are newer ones.
+ * Keeps the page's files in the browser, and announces newer ones.
  * @param {App} app
  */
 async function keepFiles(app) {

@@ -26,7 +26,7 @@ export class Recordings {
     return true;
   }
 
-  /** Ends the recording that runs and keeps it. */
+  /** Ends and keeps the running recording. */
   async end() {
     const recording = await this.app.world.ask("endRecording");
     if (this.app.moment) this.app.moment.recorded = null;

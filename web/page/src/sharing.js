@@ -47,7 +47,7 @@ export class Sharing {
     return sceneOf(state.settings) === null || !room ? null : room.files;
   }
 
-  /** Tells states apart, wherever one looks from. */
+  /** A key that distinguishes states, whatever the camera. */
   get key() {
     return JSON.stringify({ ...this.state, view: null });
   }

@@ -33,7 +33,7 @@ export class World {
     this.alive = true;
     this.worker = worker;
     this.heard = performance.now();
-    /** When it was asked whether it lives, if it has not answered yet. */
+    /** The time of the last unanswered ping. */
     this.pinged = 0;
     this.hung = false;
     this.watch = setInterval(() => this.look(), LOOK);

@@ -130,7 +130,7 @@ impl Writer<'_> {
         section
     }
 
-    /// Strings a spatial tendon: sites, at times a geom between two of them or a pulley.
+    /// Draws the path of a spatial tendon: sites, sometimes with a geom between two of them or a pulley.
     fn spatial(&mut self) -> Node {
         let mut tendon = Node::new("spatial").with("name", self.name("t"));
         self.class(&mut tendon, "class");

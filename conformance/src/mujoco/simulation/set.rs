@@ -42,7 +42,7 @@ impl Simulation {
         self.disable(DISABLE_SENSOR, off);
     }
 
-    /// Switches contacts off, or on again.
+    /// Turns contacts off or on.
     pub fn disable_contacts(&mut self, off: bool) {
         self.disable(DISABLE_CONTACT, off);
     }

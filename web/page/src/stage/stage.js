@@ -67,9 +67,9 @@ export class Stage {
     /** Distance of the camera, m. */
     this.focus = { value: 2 };
     this.shared = { rim: this.studio.rim, focus: this.focus };
-    /** Whether everything of the scene is in its place; before, nothing is drawn. */
+    /** Whether the whole scene is loaded; before, nothing is drawn. */
     this.placed = false;
-    /** Whether the shaders are there, likewise. */
+    /** Whether the shaders are compiled; before, nothing is drawn. */
     this.compiled = false;
     new ResizeObserver(() => this.resize()).observe(canvas);
     this.resize();

@@ -1,6 +1,6 @@
 // The past of a world: snapshots, and between them what was done, so that every moment is reached again with the same bits.
 
-/** Seconds between snapshots of a life. */
+/** Seconds between snapshots. */
 const APART = 0.5;
 /** Seconds of a life that one can go back. */
 const KEPT = 30;

@@ -63,7 +63,7 @@ export class LiveWorld {
     this.clock.speed = movement.speed;
   }
 
-  /** The recording that plays, if one does. */
+  /** The recording that plays, if any. */
   get replay() {
     const { recording, known, at } = this.past;
     return recording && known ? { recording, done: at } : null;
