@@ -15,7 +15,7 @@ STRENGTH = 12.0
 """How fast the pulled body would swing, rad/s: stiffness is its square times the mass that the point feels."""
 
 MOST = 40.0
-"""The greatest force, in weights of the mass at the point, so that a distant pointer does not throw the infant out of the room."""
+"""The greatest force, in weights of the mass at the point, so that a distant pointer cannot throw the infant out of the room."""
 
 
 class Spring:
