@@ -274,8 +274,9 @@ fn it_ends_after_its_episodes_or_when_it_is_interrupted() {
     );
     let mut viewer = Viewer::start(&folder, &["--config", &file]);
     viewer.ask("pause 1");
-    let sent = Command::new("kill")
-        .args(["-INT", &viewer.child.id().to_string()])
+    // the shell's own: a small system has no program `kill`
+    let sent = Command::new("sh")
+        .args(["-c", &format!("kill -INT {}", viewer.child.id())])
         .status();
     assert!(sent.expect("the signal is sent").success());
     assert_eq!(viewer.child.wait().expect("it ends").code(), Some(0));

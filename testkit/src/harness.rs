@@ -71,6 +71,12 @@ impl Need {
     }
 }
 
+/// Time: the test takes minutes, which `scripts/test.sh quick` (the variable `QUICK=yes`) does not spend.
+pub const TIME: Need = Need::new("time", None, || match std::env::var_os("QUICK") {
+    Some(value) if value == "yes" => Err("`scripts/test.sh quick` leaves out what takes minutes".to_string()),
+    _ => Ok(()),
+});
+
 /// A test: its path, what it needs, and its function.
 #[derive(Clone, Copy)]
 pub struct Trial {

@@ -4,7 +4,8 @@ use babybench::config::{Config, RendererKind, Scene};
 use babybench::env::{Viewer, draw_eyes};
 use babybench::render::gpu::{Depth, GpuError, GpuRenderer, Gray, Pending, Rgb, Segmentation, wgpu};
 use babybench::render::{CpuRenderer, Poses, RenderError, RenderRequest, SharedGpu, View};
-use babybench::{Blueprint, Env, EnvError, VectorEnv, VectorOptions};
+use babybench::{Blueprint, Env, VectorEnv, VectorOptions};
+use testkit::adapters::measured;
 use testkit::harness::{Need, Trial};
 use testkit::{show, trials};
 
@@ -26,12 +27,12 @@ fn config(scene: Scene) -> Config {
     }
 }
 
-/// An adapter for wgpu.
+/// An adapter for wgpu of which it is known what it draws.
 const GPU: Need = Need::new("GPU", Some("BABYBENCH_GPU"), || {
-    match Blueprint::new(config(Scene::Base)).expect("embedded assets").gpu() {
-        Err(EnvError::Render(RenderError::Gpu(e @ GpuError::NoAdapter { .. }))) => Err(e.to_string()),
-        _ => Ok(()),
-    }
+    let blueprint = Blueprint::new(config(Scene::Base)).expect("embedded assets");
+    let gpu = blueprint.gpu().map_err(|e| e.to_string())?;
+    let adapter = gpu.lock().expect("no other thread").adapter().to_string();
+    measured(&adapter).map(drop)
 });
 
 /// A blueprint and its renderer.

@@ -18,7 +18,10 @@ fn interrupt(dir: &Path, arguments: &[&str], until: &Path, signal: &str) -> (Opt
         assert!(child.try_wait().expect("a status").is_none(), "it ended");
         std::thread::sleep(Duration::from_millis(20));
     }
-    let sent = Command::new("kill").args([signal, &child.id().to_string()]).status();
+    // the shell's own: a small system has no program `kill`
+    let sent = Command::new("sh")
+        .args(["-c", &format!("kill {signal} {}", child.id())])
+        .status();
     assert!(sent.expect("the signal is sent").success());
     let out = child.wait_with_output().expect("it ends");
     (out.status.code(), text(&out))

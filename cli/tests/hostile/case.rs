@@ -129,6 +129,7 @@ impl Case {
         let file = |k: usize| std::fs::File::create(&said[k]).expect("a file");
         let mut child = command
             .env("RUST_BACKTRACE", "0")
+            .env("MALLOC_ARENA_MAX", "2") // glibc reserves 64 MiB of the limit for each thread, of which there are as many as processors
             .stdin(Stdio::null())
             .stdout(file(0))
             .stderr(file(1))

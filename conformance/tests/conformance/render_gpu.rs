@@ -1,16 +1,17 @@
-//! Pictures drawn by wgpu against MuJoCo 3.3.0's own renderer (OSMesa), many in one submission. The bounds are those of a device in
-//! software; a GPU filters textures and places samples in its own way, and so does MuJoCo's renderer on it.
+//! Pictures drawn by wgpu against MuJoCo 3.3.0's own renderer (OSMesa, Mesa's llvmpipe), many in one submission. Bounds are those of the
+//! adapter: a GPU filters textures and places samples in its own way, and so does MuJoCo's renderer on it.
 
 use babybench::config::Scene;
 use babybench::mimo::{build_model, embedded};
 use babybench::mjcf_loader::load_str;
 use babybench::model::Model;
 use babybench::physics::{Engine, SoftEngine, SoftOptions, State, compile};
-use babybench::render::gpu::{GpuError, GpuRenderer, Rgb};
+use babybench::render::gpu::{GpuRenderer, Rgb};
 use babybench::render::{Poses, RenderRequest, Scenery, View};
 use conformance::data;
 use conformance::measure::only_print;
 use conformance::pictures::{Difference, config, pictures};
+use testkit::adapters::{Adapter, measured};
 use testkit::harness::{Need, Trial};
 use testkit::{show, trials};
 
@@ -18,12 +19,10 @@ pub fn trials() -> Vec<Trial> {
     trials![needs GPU: eyes_and_room_cameras_show_what_mujoco_draws, small_scenes_are_what_mujoco_draws]
 }
 
-/// An adapter for wgpu.
+/// An adapter for wgpu of which it is known what it draws.
 const GPU: Need = Need::new("GPU", Some("BABYBENCH_GPU"), || {
-    match GpuRenderer::new(small("glass").1.into()) {
-        Err(e @ GpuError::NoAdapter { .. }) => Err(e.to_string()),
-        _ => Ok(()),
-    }
+    let gpu = GpuRenderer::new(small("glass").1.into()).map_err(|e| e.to_string())?;
+    measured(gpu.adapter()).map(drop)
 });
 
 /// Returns a scene of what BabyBench's scenes do not have: transparent geoms and a plane seen from below, meshes, skins, or tendons.
@@ -35,18 +34,13 @@ fn small(name: &str) -> (Model, Scenery) {
     (model, scenery)
 }
 
-/// A renderer, and an engine to place the scene.
-fn open(model: Model) -> (GpuRenderer, SoftEngine) {
+/// A renderer, what its adapter is, and an engine to place the scene.
+fn open(model: Model) -> (GpuRenderer, Adapter, SoftEngine) {
     let scenery = Scenery::new(&model, &embedded()).expect("the textures load");
     let gpu = GpuRenderer::new(scenery.into()).expect("a renderer");
     show!("{}", gpu.adapter());
-    (gpu, SoftEngine::new(model.into(), SoftOptions::default()))
-}
-
-/// Whether the device computes as the reference did: Mesa's llvmpipe, and not through OpenGL, where wgpu leaves the edges of
-/// cube maps unblended.
-fn like_the_reference(gpu: &GpuRenderer) -> bool {
-    gpu.adapter().contains("llvmpipe") && gpu.adapter().contains("Vulkan")
+    let adapter = measured(gpu.adapter()).expect("the need was met");
+    (gpu, adapter, SoftEngine::new(model.into(), SoftOptions::default()))
 }
 
 fn state(engine: &mut SoftEngine, qpos: &[f64]) -> State {
@@ -86,7 +80,7 @@ fn eyes_and_room_cameras_show_what_mujoco_draws() {
         let config = config(scene.clone());
         let npz = data::npz(&format!("render_{scene}.npz"));
         let model = build_model(&config, &embedded()).expect("the scene compiles");
-        let (mut gpu, mut engine) = open(model);
+        let (mut gpu, adapter, mut engine) = open(model);
         let qpos = npz.get_f64("qpos").expect("committed data").data;
         let nq = engine.model().nq;
         let states: Vec<_> = qpos.chunks_exact(nq).map(|q| state(&mut engine, q)).collect();
@@ -105,12 +99,15 @@ fn eyes_and_room_cameras_show_what_mujoco_draws() {
             }
             // when written, lavapipe: mean 0.020, 0.015, 0.038 of 255, max 2; in one pass single samples at silhouettes differ;
             // H200: 0.070, 0.095, 0.135, where MuJoCo's own renderer is 0.169, 0.521, 0.436 from the reference
-            let [mean, ssim] = if gpu.is_software() { [0.1, 0.999] } else { [0.25, 0.995] };
+            let [mean, ssim] = match adapter {
+                Adapter::Vulkan | Adapter::OpenGl => [0.1, 0.999],
+                Adapter::Nvidia => [0.25, 0.995],
+            };
             assert!(
                 all.least_ssim() >= ssim && all.mean() <= mean && all.off()[1] <= 0.1,
                 "{all}"
             );
-            if apart && like_the_reference(&gpu) {
+            if apart && adapter == Adapter::Vulkan {
                 assert!(all.mean() <= 0.05 && all.max <= 3, "{all}");
             }
         }
@@ -133,7 +130,7 @@ fn eyes_and_room_cameras_show_what_mujoco_draws() {
 
 fn small_scenes_are_what_mujoco_draws() {
     for (name, mean) in [("glass", 0.4), ("meshes", 0.05), ("skins", 0.05), ("strings", 0.05)] {
-        let (mut gpu, mut engine) = open(small(name).0);
+        let (mut gpu, adapter, mut engine) = open(small(name).0);
         let qpos0 = engine.model().qpos0.clone();
         let state = state(&mut engine, &qpos0);
         let npz = data::npz(&format!("render_{name}.npz"));
@@ -141,8 +138,13 @@ fn small_scenes_are_what_mujoco_draws() {
         let shots: Vec<_> = (0..theirs.len()).map(|k| shot(&state, k, size)).collect();
         for apart in [true, false] {
             gpu.draw_apart(apart);
-            // on H200 up to 0.37 and 5.4 % for what is transparent, 0.30 and 5.4 % for textures seen from near
-            let [mean, off] = if gpu.is_software() { [mean, 0.2] } else { [0.5, 8.0] };
+            let [mean, off] = match adapter {
+                Adapter::Vulkan => [mean, 0.2],
+                // up to 0.2135 % at the edges of cube maps, with Mesa 22.3 and 25.0
+                Adapter::OpenGl => [mean, 0.5],
+                // on H200 up to 0.37 and 5.4 % for what is transparent, 0.30 and 5.4 % for textures seen from near
+                Adapter::Nvidia => [0.5, 8.0],
+            };
             for (one, shot) in differences(&mut gpu, &shots, &theirs).iter().zip(&shots) {
                 show!("{name} {:10} {one}", engine.model().cam_name[shot.view.camera]);
                 let fine = one.mean() <= mean && one.off()[0] <= off && one.least_ssim() >= 0.999;
