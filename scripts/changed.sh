@@ -21,7 +21,8 @@ while read -r file; do
     examples/checksum/*) concerns='rust web' ;; # whose bits the package has, too
     cli/*) concerns='rust python' ;; # the wheel has it, too
     conformance/* | tests/* | testkit/* | benches/* | examples/*) concerns=rust ;;
-    CHANGELOG.md | changes/* | towncrier.toml | CONTRIBUTING.md | SECURITY.md | LICENSE-* | NOTICE | _typos.toml | deny.toml) concerns='' ;;
+    .github/* | CHANGELOG.md | changes/* | towncrier.toml | CODE_OF_CONDUCT.md | CONTRIBUTING.md | SECURITY.md | LICENSE-* | NOTICE | _typos.toml | deny.toml)
+      concerns='' ;;
     docs/* | *.md) concerns=rust ;; # programs in the README run, the guide's tables are compared
     *) concerns=$every ;;
   esac

@@ -50,7 +50,7 @@ lines() { # COMMAND THREADS LONGEST: all kinds
 }
 module_lines() { # COMMAND
   local kind
-  for kind in episode variant vector snapshot picture; do $1 $kind || return; done
+  for kind in episode variant vector snapshot picture; do $1 "$kind" || return; done
 }
 
 wrong=0

@@ -1,5 +1,15 @@
-// Chromium for the tests. CHROMIUM names another than the system's.
+// Browsers for the tests. CHROMIUM and FIREFOX name others than the system's.
+import { existsSync } from "node:fs";
 import { chromium } from "playwright-core";
+
+/** The programs; an empty variable says that there is none. */
+const CHROMIUM = process.env.CHROMIUM ?? "/usr/bin/chromium";
+export const FIREFOX = process.env.FIREFOX ?? "/usr/bin/firefox-esr";
+
+/** Why a test that needs the browser cannot run, as `skip` of node's tests has it. */
+const missing = (/** @type {string} */ program, /** @type {string} */ variable) => !existsSync(program) && `${program || "no browser"} is not there: ${variable} names another`;
+export const noChromium = missing(CHROMIUM, "CHROMIUM");
+export const noFirefox = missing(FIREFOX, "FIREFOX");
 
 /** How often a browser may fall while it starts. */
 const TRIES = 3;
@@ -13,7 +23,7 @@ const TRIES = 3;
 export async function launch(...more) {
   for (let left = TRIES - 1; ; left--) {
     try {
-      return await chromium.launch({ executablePath: process.env.CHROMIUM ?? "/usr/bin/chromium", args: ["--no-sandbox", ...more] });
+      return await chromium.launch({ executablePath: CHROMIUM, args: ["--no-sandbox", ...more] });
     } catch (error) {
       if (left === 0) throw error;
       console.error(`Chromium did not start, ${left} tries are left: ${error instanceof Error ? error.message.slice(0, 2000) : error}`);

@@ -6,7 +6,7 @@ import { readFile } from "node:fs/promises";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { test } from "node:test";
-import { launch } from "../launch.mjs";
+import { FIREFOX, launch, noChromium, noFirefox } from "../launch.mjs";
 import { native, upTo } from "./native.mjs";
 import { root, serve } from "./server.mjs";
 import { sums } from "./sums.js";
@@ -15,7 +15,7 @@ test("node", async () => {
   assert.equal(await sums((file) => readFile(join(root, "configs", file), "utf8")), native);
 });
 
-test("Chromium", async () => {
+test("Chromium", { skip: noChromium }, async () => {
   const browser = await launch();
   const server = await serve();
   try {
@@ -30,12 +30,12 @@ test("Chromium", async () => {
 });
 
 // Nothing drives Debian's Firefox without a further tool: the page reports by itself.
-test("Firefox", async () => {
+test("Firefox", { skip: noFirefox }, async () => {
   const server = await serve();
   const profile = mkdtempSync(join(tmpdir(), "firefox-"));
   const quiet = ["app.update.enabled", "browser.shell.checkDefaultBrowser", "datareporting.policy.dataSubmissionEnabled", "toolkit.telemetry.enabled"];
   writeFileSync(join(profile, "user.js"), quiet.map((key) => `user_pref("${key}", false);\n`).join(""));
-  const firefox = spawn(process.env.FIREFOX ?? "firefox-esr", ["--headless", "--no-remote", "--profile", profile, `${server.page}?report=100`], { stdio: "ignore" });
+  const firefox = spawn(FIREFOX, ["--headless", "--no-remote", "--profile", profile, `${server.page}?report=100`], { stdio: "ignore" });
   const failed = new Promise((_, no) => {
     firefox.on("error", no);
     firefox.on("exit", (code) => no(new Error(`Firefox ended with ${code} before the page reported`)));

@@ -1,10 +1,10 @@
 // Environments in a worker of a browser.
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { launch } from "../launch.mjs";
+import { launch, noChromium } from "../launch.mjs";
 import { serve } from "./server.mjs";
 
-test("a worker steps, draws and tells errors", async () => {
+test("a worker steps, draws and tells errors", { skip: noChromium }, async () => {
   const browser = await launch();
   const server = await serve();
   try {
