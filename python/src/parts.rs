@@ -217,22 +217,26 @@ impl Parts {
         })
     }
 
-    /// Returns which of `qpos`, `qvel`, `ctrl`, `act` and `qfrc_applied` differ from the state, bits 0 to 4, and whether `xfrc_applied`,
-    /// if given as the sixth, is not zero, bit 5.
+    /// Returns which of `qpos`, `qvel`, `ctrl`, `act`, `qfrc_applied`, `xfrc_applied`, `mocap_pos` and `mocap_quat` differ from the
+    /// state, bits 0 to 7.
     fn differences(&self, arrays: Vec<PyReadonlyArrayDyn<'_, f64>>) -> PyResult<u32> {
         self.with(|env, _| {
             let s = env.state();
-            let own = [&s.qpos, &s.qvel, &s.ctrl, &s.act, &s.qfrc_applied];
+            let own: [&[f64]; 8] = [
+                &s.qpos,
+                &s.qvel,
+                &s.ctrl,
+                &s.act,
+                &s.qfrc_applied,
+                s.xfrc_applied.as_flattened(),
+                s.mocap_pos.as_flattened(),
+                s.mocap_quat.as_flattened(),
+            ];
             let mut bits = 0;
-            if let Some(forces) = arrays.get(own.len())
-                && forces.as_array().iter().any(|&force| force != 0.0)
-            {
-                bits |= 1 << own.len();
-            }
             for (k, (own, array)) in own.into_iter().zip(&arrays).enumerate() {
                 let other = array.as_slice().map_err(|e| PyValueError::new_err(e.to_string()))?;
                 // the kit's muscles are not MuJoCo's, so `act` is empty
-                if other.len() == own.len() && other != &own[..] {
+                if other.len() == own.len() && other != own {
                     bits |= 1 << k;
                 }
             }
@@ -265,7 +269,7 @@ filled! {
     qpos qvel ctrl qfrc_applied qacc_warmstart qfrc_bias qfrc_passive actuator_force qfrc_actuator qfrc_smooth qacc_smooth
     qfrc_constraint qacc sensordata;
     xpos xquat xmat xipos ximat xanchor xaxis geom_xpos geom_xmat site_xpos site_xmat cam_xpos cam_xmat subtree_com
-    cdof cvel cacc cfrc_ext cfrc_int
+    cdof cvel cacc cfrc_ext cfrc_int xfrc_applied mocap_pos mocap_quat
 }
 
 fn write(name: &str, values: &[f64], array: Option<&mut PyReadwriteArrayDyn<'_, f64>>) -> PyResult<()> {

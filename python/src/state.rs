@@ -18,17 +18,30 @@ table! { ARRAYS, array, State,
 }
 
 /// The arrays that can be written.
-const WRITABLE: [&str; 6] = ["qpos", "qvel", "ctrl", "act", "qfrc_applied", "qacc_warmstart"];
+const WRITABLE: [&str; 9] = [
+    "qpos",
+    "qvel",
+    "ctrl",
+    "act",
+    "qfrc_applied",
+    "xfrc_applied",
+    "mocap_pos",
+    "mocap_quat",
+    "qacc_warmstart",
+];
 
 /// Writes an array; what follows from it is computed by the next step, or by `forward`.
 pub fn write(state: &mut State, name: &str, values: &Bound<'_, PyAny>) -> PyResult<()> {
-    let out = match name {
-        "qpos" => &mut state.qpos,
-        "qvel" => &mut state.qvel,
-        "ctrl" => &mut state.ctrl,
-        "act" => &mut state.act,
-        "qfrc_applied" => &mut state.qfrc_applied,
-        "qacc_warmstart" => &mut state.qacc_warmstart,
+    let (out, width): (&mut [f64], Option<usize>) = match name {
+        "qpos" => (&mut state.qpos, None),
+        "qvel" => (&mut state.qvel, None),
+        "ctrl" => (&mut state.ctrl, None),
+        "act" => (&mut state.act, None),
+        "qfrc_applied" => (&mut state.qfrc_applied, None),
+        "xfrc_applied" => (state.xfrc_applied.as_flattened_mut(), Some(6)),
+        "mocap_pos" => (state.mocap_pos.as_flattened_mut(), Some(3)),
+        "mocap_quat" => (state.mocap_quat.as_flattened_mut(), Some(4)),
+        "qacc_warmstart" => (&mut state.qacc_warmstart, None),
         _ if ARRAYS.contains(&name) => {
             return Err(PyValueError::new_err(format!(
                 "{name} is computed; what can be written is {}",
@@ -39,14 +52,15 @@ pub fn write(state: &mut State, name: &str, values: &Bound<'_, PyAny>) -> PyResu
             return Err(PyKeyError::new_err(format!("there is no array {name:?}")));
         }
     };
+    let shape = width.map_or(vec![out.len()], |width| vec![out.len() / width, width]);
     let mut new: Vec<f64> = Vec::new();
-    read(name, values, &[out.len()], &mut new)?;
+    read(name, values, &shape, &mut new)?;
     if let Some((index, value)) = new.iter().enumerate().find(|(_, v)| !v.is_finite()) {
         return Err(PyValueError::new_err(format!(
             "{name}[{index}] is {value}, which is not finite"
         )));
     }
-    *out = new;
+    out.copy_from_slice(&new);
     Ok(())
 }
 

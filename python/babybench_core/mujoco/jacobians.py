@@ -44,9 +44,14 @@ def chain(m: MjModel, body: int) -> NDArray[np.intp]:
 
 def check(m: Any, d: Any) -> None:
     """Refuses models and states that are not of this module, and states of other models."""
+    if getattr(d, "__dict__", {}).get("_sync") is not None:
+        # the state of an environment: its arrays have the same names, and the environment does the rest
+        if d.model is not m:
+            raise ValueError("the state belongs to another model: give the functions env.model and env.data")
+        return
     if not isinstance(m, MjModel) or not isinstance(d, MjData):
         raise TypeError(
-            "expected an MjModel and an MjData of babybench.mujoco, but these are "
+            "expected an MjModel and an MjData of babybench.mujoco, or env.model and env.data of one environment, but these are "
             f"{type(m).__module__}.{type(m).__name__} and {type(d).__module__}.{type(d).__name__}"
         )
     if d.model is not m:

@@ -32,6 +32,15 @@ class Beneath(Protocol):
     def model(self) -> Any:
         """Returns the model that scripts see."""
 
+    def pull(self) -> None:
+        """Reads back what a script has written to the model and to the state."""
+
+    def physics_step(self) -> None:
+        """Advances by one physics step."""
+
+    def reset_data(self) -> None:
+        """Forgets the past."""
+
     def written(self) -> None:
         """Takes note that a script has written to the state."""
 

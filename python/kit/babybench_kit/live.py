@@ -10,7 +10,7 @@ import numpy as np
 from .beneath import Beneath
 from .views import DataView
 
-STATE = ("qpos", "qvel", "ctrl", "act", "qfrc_applied")
+STATE = ("qpos", "qvel", "ctrl", "act", "qfrc_applied", "xfrc_applied", "mocap_pos", "mocap_quat")
 """Arrays that can be written to: the bits of ``Parts.differences``."""
 
 
@@ -43,19 +43,14 @@ class Live:
         if not self.course.copy.present:
             return
         data, parts, engine = self.data, self.core.parts, self.core.engine
-        bits = parts.differences(self.watched)
+        bits = parts.differences(self.state)
         if not bits:
             return
-        if bits & 32:
-            raise ValueError(
-                "data.xfrc_applied is not served: turn the force into a generalised one with "
-                "mujoco.mj_applyFT(model, data, force, torque, point, body, data.qfrc_applied)"
-            )
         if bits & 0b11:
             forwarded = not np.array_equal(data.xpos, engine.state_array("xpos"))
             (parts.forward if forwarded else parts.set_position)(data.qpos, data.qvel)
-        for bit, name in ((4, "ctrl"), (8, "act"), (16, "qfrc_applied")):
-            if bits & bit:
+        for number, name in enumerate(STATE[2:], 2):
+            if bits >> number & 1:
                 engine.write_state(name, getattr(data, name))
         self.core.written()
 
@@ -63,11 +58,6 @@ class Live:
     def state(self) -> list[Any]:
         """Returns the arrays that can be written to."""
         return [getattr(self.data, name) for name in STATE]
-
-    @property
-    def watched(self) -> list[Any]:
-        """Returns the arrays in which writing is noticed: arguments of ``Parts.differences``."""
-        return self.state
 
 
 class ViewLive(Live):
@@ -106,6 +96,22 @@ class ViewLive(Live):
 
     def forward(self) -> None:
         """Computes everything at the positions and velocities that a script has written: ``mujoco.mj_forward``."""
+        self.core.pull()
         self.core.parts.forward(self.data.qpos, self.data.qvel)
         self.core.written()
         self.refresh()
+
+    def step(self, count: int) -> None:
+        """Advances by physics steps: ``mujoco.mj_step``."""
+        for _ in range(count):
+            self.core.physics_step()
+        if not self.course.copy.present:
+            self.refresh()
+
+    def reset(self) -> None:
+        """Forgets the past: ``mujoco.mj_resetData``."""
+        self.core.reset_data()
+        self.refresh()
+
+    def rne_post_constraint(self) -> None:
+        """Does nothing: a physics step computes forces between bodies."""

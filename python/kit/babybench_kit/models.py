@@ -17,9 +17,12 @@ from .standin import MUJOCO
 from .utils import JOINT_EQUALITY
 from .views import ModelView
 
-_CHECKED = ("body", "jnt", "dof", "geom", "site", "cam", "tendon", "actuator", "pair", "eq", "qpos0", "qpos")
-_ALLOWED = frozenset({"eq_active0", "eq_data", "geom_rgba", "site_rgba"})
-"""Arrays that scripts may write to, too: those of locks are read back, colours are MuJoCo's own pictures' business."""
+_CHECKED = (
+    *("body", "jnt", "dof", "geom", "site", "cam", "light", "tendon", "actuator", "pair", "eq", "qpos0", "qpos"),
+    *("mat", "tex", "mesh", "skin", "hfield"),
+)
+_ALLOWED = frozenset({"eq_active0", "eq_data", "tex_data"})
+"""Arrays that scripts may write to, too: those of locks, which are read back; and pixels, too many to compare."""
 
 
 def mujoco_module() -> ModuleType | None:
@@ -59,6 +62,10 @@ def mujoco_model(mujoco: ModuleType, core: Beneath) -> Any:
     if core.assets is not None:
         xml, images = _with_small_textures(core.config, xml, images)
     model = mujoco.MjModel.from_xml_string(xml, images)
+    # the defaults of MuJoCo 3.3.0, whose contacts the engine has
+    for name in ("mjDSBL_MULTICCD", "mjDSBL_ISLAND"):
+        model.opt.disableflags |= int(getattr(mujoco.mjtDisableBit, name, 0))
+    model.opt.ccd_iterations = 50
     model.vis.global_.offwidth, model.vis.global_.offheight = core.width, core.height
     if core.place is not None:
         model.body_pos[1] = core.place
@@ -190,7 +197,7 @@ def make_model(core: Beneath) -> Any:
     """Makes the model that scripts see: MuJoCo's own where it is installed."""
     mujoco = mujoco_module()
     model = mujoco_model(mujoco, core) if mujoco is not None else view_model(core)
-    active = np.asarray(core.parts.eq_active0)
+    active = np.asarray(core.parts.eq_active0).astype(model.eq_active0.dtype)
     model.eq_active0[:] = active
     for name, array in core.engine.model_changes.items():
         _put(model, name, array)  # of the environment that this one is a copy of

@@ -82,13 +82,18 @@ class MujocoLive(Live):
         self.data._live = weakref.ref(self)
         self.position = [getattr(mujoco, name) for name in _POSITION]
         self.constraint = [getattr(mujoco, name) for name in _CONSTRAINT]
-        self.arrays = [getattr(self.data, name) for name in core.parts.FILLED]
+        self._solve = mujoco.mj_fwdConstraint
+        self.arrays = [self._array(name) for name in core.parts.FILLED]
         self._state = [getattr(self.data, name) for name in STATE]
-        self._forces = self.data.xfrc_applied
-        self._eq_active = self.data.eq_active
+        self._eq_active = self.data.eq_active.view(np.uint8)  # MuJoCo 3.9 and later have booleans
         self.muscle = core.config["actuation_model"] == "muscle"
         self.refresh()
         self.idle = self._references()
+
+    def _array(self, name: str) -> Any:
+        """Returns an array of MuJoCo's; empty ones are at one place there, where they could not be written to together."""
+        array = getattr(self.data, name)
+        return array if array.size else np.zeros(array.shape)
 
     def _references(self) -> int:
         # MuJoCo's arrays are the same objects each time, and do not hold the state
@@ -149,8 +154,8 @@ class MujocoLive(Live):
         forces = self.core.parts.efc_force
         if len(forces) == self.data.nefc:
             self.data.efc_force[:] = forces
-
-    @property
-    def watched(self) -> list[Any]:
-        """Returns the arrays that can be written to, and external forces, which cannot."""
-        return [*self._state, self._forces]
+        elif self.data.nefc:
+            # another release of MuJoCo finds other contacts: their forces are its own
+            self.core.parts.fill_start(self._eq_active, self._state[:2])
+            self._solve(self.model, self.data)
+            self.core.parts.fill(self.arrays)

@@ -146,16 +146,16 @@ def lock_joint(mujoco_model: Any, joint_name: str, joint_angle: float | None = N
         joint = _scalar(own.obj1id)
         for number in range(mujoco_model.neq):
             other = mujoco_model.equality(number)
-            if number == own.id or _scalar(other.type) != JOINT_EQUALITY or not _scalar(other.active0):
+            if number == own.id or _scalar(other.type) != JOINT_EQUALITY or not mujoco_model.eq_active0[number]:
                 continue
             if joint in (_scalar(other.obj1id), _scalar(other.obj2id)):
                 return
-    own.active0[0] = 1
+    mujoco_model.eq_active0[own.id] = 1  # `own.active0` is a copy in MuJoCo 3.9
 
 
 def unlock_joint(mujoco_model: Any, joint_name: str) -> None:
     """Unlocks a joint from the next reset on."""
-    mujoco_model.equality(joint_name).active0[0] = 0
+    mujoco_model.eq_active0[mujoco_model.equality(joint_name).id] = 0
 
 
 # --- frames ---

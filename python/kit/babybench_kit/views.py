@@ -1,14 +1,14 @@
 """What stands for MuJoCo's ``MjModel`` and ``MjData`` where MuJoCo is not installed.
 
 Names, shapes, number types and units are MuJoCo's. The arrays of a state show the present after every step; ``qpos``, ``qvel``,
-``ctrl`` and ``qfrc_applied`` can be written. Of a model ``eq_active0`` and ``eq_data`` can be written, which lock joints, and
-what the engine takes over in the next step: gravity, timestep, mass, inertia, size, friction, damping, stiffness, armature,
-gears, softness.
+``ctrl``, ``qfrc_applied``, ``xfrc_applied`` and those of mocap bodies can be written. Of a model ``eq_active0`` and ``eq_data``
+can be written, which lock joints, and what the engine takes over in the next step: gravity, timestep, mass, inertia, size,
+friction, damping, stiffness, armature, gears, softness.
 """
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, NoReturn
 
 import numpy as np
 from numpy.typing import NDArray
@@ -83,8 +83,32 @@ class Options:
         raise AttributeError(_MODEL_HELP.format(name=f"opt.{name}"))
 
 
+_DOCUMENTS = (
+    "the stand-in for MuJoCo shows environments (env.model, env.data) and compiles no documents: babybench.mujoco.{name} does, "
+    "and babybench.mujoco.install() lets `import mujoco` mean it; or pip install mujoco"
+)
+
+
 class ModelView(_Named):
     """The compiled scene under the names of ``MjModel``."""
+
+    @staticmethod
+    def from_xml_string(*_: Any, **__: Any) -> NoReturn:
+        """Says what compiles documents.
+
+        Raises:
+            NotImplementedError: Always.
+        """
+        raise NotImplementedError(_DOCUMENTS.format(name="MjModel.from_xml_string"))
+
+    @staticmethod
+    def from_xml_path(*_: Any, **__: Any) -> NoReturn:
+        """Says what compiles documents.
+
+        Raises:
+            NotImplementedError: Always.
+        """
+        raise NotImplementedError(_DOCUMENTS.format(name="MjModel.from_xml_path"))
 
     def __init__(self, blueprint: _native.Blueprint) -> None:
         """Shows the scene of a blueprint."""
@@ -96,6 +120,7 @@ class ModelView(_Named):
         own["_names"] = names
         own["_numbers"] = _numbers(names)
         own["_blueprint"] = blueprint
+        own["_chains"] = {}
         own.update({name: int(options[key]) for name, key in _SIZES.items()})
         own.update(
             na=0,
@@ -170,14 +195,23 @@ _JOINT_ROWS = ("xanchor", "xaxis")
 class DataView(_Named):
     """The present state under the names of ``MjData``."""
 
-    def __init__(self, env: _native.Env, model: ModelView, shapes: dict[str, tuple[int, ...]]) -> None:
-        """Makes room for the arrays in one piece of memory, which tells whether somebody holds one of them."""
+    def __init__(
+        self, env: _native.Env, model: ModelView | None = None, shapes: dict[str, tuple[int, ...]] | None = None
+    ) -> None:
+        """Makes room for the arrays in one piece of memory, which tells whether somebody holds one of them.
+
+        Raises:
+            TypeError: A script makes a state of its own.
+        """
+        if model is None or shapes is None:
+            raise TypeError(_DOCUMENTS.format(name="MjData"))
         own = self.__dict__
         sizes = {name: int(np.prod(shape)) for name, shape in shapes.items()}
         memory = np.zeros(sum(sizes.values()))
         arrays, at = {}, 0
         for name, shape in shapes.items():
-            arrays[name] = memory[at : at + sizes[name]].reshape(shape)
+            # two empty arrays at one place could not be written to together
+            arrays[name] = memory[at : at + sizes[name]].reshape(shape) if sizes[name] else np.zeros(shape)
             at += sizes[name]
         own.update(model=model, _names=model._names, _numbers=model._numbers, _env=env, _memory=memory, _arrays=arrays)
         own.update(time=0.0, act=np.zeros(0), _sync=None)
@@ -194,6 +228,15 @@ class DataView(_Named):
         if name not in self._arrays:
             raise AttributeError(f"{name} of the state cannot be replaced")
         self._arrays[name][...] = value
+
+    def _compute(self, *_: str) -> None:
+        """Computes everything at the positions and velocities that a script has written, for the functions of MuJoCo."""
+        self._sync.forward()
+
+    @property
+    def _own(self) -> Any:
+        """Returns what the functions of MuJoCo advance."""
+        return self._sync
 
     @property
     def contact(self) -> ContactList:

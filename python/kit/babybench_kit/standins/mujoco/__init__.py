@@ -1,4 +1,4 @@
-"""The few of MuJoCo's functions that scripts for BabyBench call, on what stands for its model and its state.
+"""MuJoCo's functions on the model and the state of environments, ``env.model`` and ``env.data``.
 
 Everything else is MuJoCo's own business: ``pip install mujoco``.
 """
@@ -10,8 +10,14 @@ from typing import Any, NoReturn
 import numpy as np
 from numpy.typing import NDArray
 
-from babybench_core.mujoco.enums import mjtGeom, mjtJoint, mjtObj
-from babybench_core.mujoco.functions import mj_contactForce, mj_id2name, mj_name2id
+from babybench_core.mujoco import enums as _enums
+from babybench_core.mujoco import functions as _functions
+from babybench_core.mujoco import jacobians as _jacobians
+from babybench_core.mujoco import maths as _maths
+from babybench_core.mujoco.enums import *  # noqa: F403
+from babybench_core.mujoco.functions import *  # noqa: F403
+from babybench_core.mujoco.jacobians import *  # noqa: F403
+from babybench_core.mujoco.maths import *  # noqa: F403
 from babybench_kit.views import DataView as MjData
 from babybench_kit.views import ModelView as MjModel
 
@@ -20,23 +26,8 @@ stands_in = True
 
 __version__ = "0.0.0+babybench"
 
-__all__ = [
-    "MjData",
-    "MjModel",
-    "Renderer",
-    "mj_contactForce",
-    "mj_forward",
-    "mj_id2name",
-    "mj_name2id",
-    "mjtGeom",
-    "mjtJoint",
-    "mjtObj",
-]
-
-
-def mj_forward(m: MjModel, d: MjData) -> None:
-    """Computes everything at the positions and velocities of a state."""
-    d._sync.forward()
+__all__ = ["MjData", "MjModel", "Renderer"]
+__all__ += _enums.__all__ + _functions.__all__ + _jacobians.__all__ + _maths.__all__
 
 
 class Renderer:
@@ -76,7 +67,11 @@ class Renderer:
 
 
 def __getattr__(name: str) -> NoReturn:
+    import importlib
+
+    more = hasattr(importlib.import_module("babybench.mujoco"), name)
     raise AttributeError(
-        f"mujoco.{name}: MuJoCo is not installed, and what stands in for it here does not have that; pip install mujoco, or "
-        "call babybench.mujoco.install() before it is imported, which has more of it"
+        f"mujoco.{name}: MuJoCo is not installed, and what stands in for it here does not have that; "
+        + (f"babybench.mujoco.{name} is there (babybench.mujoco.install() makes it this module); or " if more else "")
+        + "pip install mujoco"
     )
