@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import os
 import pickle
+import subprocess
+import sys
 from pathlib import Path
 
 import gymnasium as gym
@@ -141,3 +144,40 @@ def test_a_face_is_seen_and_changes_nothing_else() -> None:
     with pytest.raises(AssertionError, match="bored is not a valid"):
         env.swap_facial_expression("bored")
     env.close(), other.close()
+
+
+def test_a_log_that_is_there_is_named_before_it_is_replaced(make: Make, tmp_path: Path) -> None:
+    make()  # nothing is there
+    log = tmp_path / "run" / "logs" / "training.pkl"
+    log.write_bytes(b"records")
+    with pytest.warns(UserWarning, match=r"training.pkl is the log of an earlier run"):
+        make()
+    make(training=False)
+
+
+def test_two_processes_in_one_folder_are_told(make: Make, tmp_path: Path) -> None:
+    program = f"""
+import sys, warnings
+import babybench, babybench.utils
+from kit_scripts import maker
+from pathlib import Path
+env = maker(Path({str(tmp_path / "run")!r}))()
+print("made", flush=True)
+sys.stdin.read()
+"""
+    folder = os.path.dirname(__file__)
+    child = subprocess.Popen(
+        [sys.executable, "-c", program],
+        stdin=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+        text=True,
+        env={**os.environ, "PYTHONPATH": folder},
+    )
+    try:
+        assert child.stdout is not None
+        assert child.stdout.readline() == "made\n"
+        with pytest.warns(UserWarning, match=rf"process {child.pid} trains into this folder"):
+            make()
+    finally:
+        child.communicate("")
+    make()

@@ -5,7 +5,7 @@ They run in the engine; these classes show what they do, and let subclasses chan
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, ClassVar, NoReturn
 
 import numpy as np
 from gymnasium import spaces
@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from babybench_core import _native
 
+from .replaceable import Replaceable
 from .utils import JOINT_EQUALITY
 
 if TYPE_CHECKING:
@@ -21,7 +22,7 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 
 
-class ActuationModel:
+class ActuationModel(Replaceable):
     """The interface of actuation models.
 
     Attributes:
@@ -73,10 +74,51 @@ class EngineActuation(ActuationModel):
         control_input: The last action, clipped to the action space.
     """
 
+    _state = frozenset({"control_input"})
+    _fixed: ClassVar[frozenset[str]] = frozenset({"actuators", "n_actuators"})
+    """Attributes that the engine does not take over."""
+
+    def __init_subclass__(cls, **arguments: Any) -> None:
+        """Refuses subclasses with another value of what the engine does not take over."""
+        super().__init_subclass__(**arguments)
+        if cls.__module__ != __name__:
+            for name in sorted(cls._fixed & set(vars(cls))):
+                cls._refuse(name)
+
     def __init__(self, env: MIMoEnv, actuators: NDArray[np.int_]) -> None:
-        """Belongs to an environment and drives some of its actuators."""
+        """Belongs to an environment and drives all of MIMo's actuators.
+
+        Raises:
+            ValueError: The environment has another actuation model.
+        """
         self.control_input: NDArray[Any] = np.zeros(0)
+        made_for = env._core.config["actuation_model"]
+        if made_for != self._engine_name:
+            raise ValueError(
+                f"{type(self).__name__} drives MIMo as {self._engine_name}, but this environment was made with {made_for}: "
+                "give the class to the constructor of the environment (actuation_model=...)"
+            )
         super().__init__(env, actuators)
+        if self.n_actuators != sum(name.startswith("act:") for name in env._core.names["actuator"]):
+            self._refuse("actuators")
+
+    @classmethod
+    def _refuse(cls, name: str) -> NoReturn:
+        raise AttributeError(
+            f"{cls.__name__}.{name} is another one than MIMo's: the engine computes this actuation model and takes no other "
+            "value; write a subclass of ActuationModel that sets env.data.ctrl in action() and substep_update()"
+        )
+
+    def __setattr__(self, name: str, value: Any) -> None:
+        if name in self._fixed and "_parts_of_mimo" in self.__dict__:
+            self._refuse(name)
+        super().__setattr__(name, value)
+
+    def _made(self) -> None:
+        for name in sorted(self._fixed & set(vars(self))):
+            if hasattr(type(self), name):  # a constant of the class
+                self._refuse(name)
+        super()._made()
 
     def get_action_space(self) -> spaces.Box:
         """Returns a new space with the bounds of an action."""
@@ -125,6 +167,13 @@ class SpringDamperModel(EngineActuation):
         """Belongs to an environment and drives some of its actuators."""
         super().__init__(env, actuators)
         self.max_torque: Array = np.asarray(env._core.blueprint.model_array("actuator_gear"))[actuators]
+        self._made()
+
+    def cost(self) -> float:
+        """Returns the cost of the present controls, 0 to 1."""
+        if "max_torque" not in self.changed:
+            return super().cost()
+        return float(abs(self.control_input**2 * self.max_torque).sum() / (self.n_actuators * self.max_torque.sum()))
 
     def observations(self) -> Array:
         """Returns controls and torques (N m), (2 n,)."""
@@ -132,7 +181,8 @@ class SpringDamperModel(EngineActuation):
 
     def simulation_torque(self) -> Array:
         """Returns the torque of each motor, (n,), N m."""
-        torque: Array = self.max_torque * self._core.engine.state_array("ctrl")[self.actuators]
+        engine = self._core.engine
+        torque: Array = (engine.model_array("actuator_gear") * engine.state_array("ctrl"))[self.actuators]
         return torque
 
 
@@ -145,6 +195,7 @@ class PositionalModel(EngineActuation):
     """
 
     _engine_name = "positional"
+    _fixed = frozenset({*EngineActuation._fixed, "actuated_joints", "locked_joints"})
 
     def __init__(self, env: MIMoEnv, actuators: NDArray[np.int_]) -> None:
         """Belongs to an environment and drives some of its actuators."""
@@ -152,10 +203,16 @@ class PositionalModel(EngineActuation):
             actuators
         ]
         super().__init__(env, actuators)
-        self.locked_joints = self.get_locked_joints()
+        self.locked_joints = self._engine_locks()
+        self._made()
+        if not np.array_equal(self.get_locked_joints(), self.locked_joints):
+            self._refuse("get_locked_joints")
 
     def get_locked_joints(self) -> NDArray[np.int_]:
         """Returns the ids of the actuated joints that a constraint holds."""
+        return self._engine_locks()
+
+    def _engine_locks(self) -> NDArray[np.int_]:
         equalities = _native.model_extras(self._core.blueprint)
         holding = (equalities["eq_type"] == JOINT_EQUALITY) & (self._core.parts.eq_active0 == 1)
         held = np.concatenate([equalities["eq_obj1id"][holding], equalities["eq_obj2id"][holding]])
@@ -189,6 +246,36 @@ class MuscleModel(EngineActuation):
     fvmax, fpmax = 1.2, 1.3
     lce_min, lce_max = 0.75, 1.05
     tau = 0.01
+    _fixed = frozenset(
+        {
+            *EngineActuation._fixed,
+            *(
+                "lmin",
+                "lmax",
+                "fvmax",
+                "fpmax",
+                "lce_min",
+                "lce_max",
+                "tau",
+                "time_step",
+                "vmax",
+                "fmax",
+                "phi_min",
+                "phi_max",
+            ),
+            *("mimo_actuated_joints", "mimo_actuated_qpos", "mimo_actuated_qvel", "activity", "target_activity"),
+            *("joint_torque", "maximum_isometric_forces"),
+        }
+    )
+    _uncalled = frozenset(
+        {
+            *("_set_max_forces", "_get_actuated_joints", "_set_muscles", "_compute_parametrization"),
+            *("_collect_muscle_parameters", "_set_initial_muscle_state", "_update_muscle_state", "_update_activity"),
+            *("_update_virtual_lengths", "_update_virtual_velocities", "_update_torque", "_apply_torque"),
+            *("_compute_muscle_action", "fl", "fv", "fp"),
+        }
+    )
+    _instead = "replace action or observations"
 
     def __init__(self, env: MIMoEnv, actuators: NDArray[np.int_]) -> None:
         """Belongs to an environment and drives some of its actuators."""
@@ -209,6 +296,7 @@ class MuscleModel(EngineActuation):
         span = (self.lce_max - self.lce_min + 1e-10) / (self.phi_max - self.phi_min + 1e-10)
         self._moments = np.concatenate([span, -span])
         self._offsets = np.concatenate([self.lce_min - span * self.phi_min, self.lce_min + span * self.phi_max])
+        self._made()
 
     @property
     def activity(self) -> Array:
@@ -227,24 +315,28 @@ class MuscleModel(EngineActuation):
 
     def observations(self) -> Array:
         """Returns activations and forces, (4 n,)."""
-        return np.concatenate([self.activity, self.muscle_forces()])
+        return np.concatenate([self.muscle_activations, self.muscle_forces * self.fmax])
 
+    @property
     def muscle_activations(self) -> Array:
         """Returns the activations of the muscles, (2 n,), 0 to 1."""
         return self.activity
 
+    @property
     def muscle_lengths(self) -> Array:
         """Returns the lengths of the muscles, (2 n,), relative to their optimum."""
         angles = self._core.engine.state_array("qpos")[self.mimo_actuated_qpos] - self._spring
         return np.asarray(np.tile(angles, 2) * self._moments + self._offsets)
 
+    @property
     def muscle_velocities(self) -> Array:
         """Returns the velocities of the muscles, (2 n,), optimal lengths per s."""
         return np.asarray(np.tile(self._core.engine.state_array("qvel")[self.mimo_actuated_qvel], 2) * self._moments)
 
-    def muscle_forces(self) -> Array:
-        """Returns the forces of the muscles, (2 n,), as proprioception reports them."""
-        return np.asarray(self._core.engine.state_array("muscle_force").astype(np.float32) * self.fmax)
+    @property
+    def muscle_forces(self) -> NDArray[np.float32]:
+        """Returns the forces of the muscles, (2 n,), relative to ``fmax``."""
+        return np.asarray(self._core.engine.state_array("muscle_force").astype(np.float32))
 
     def simulation_torque(self) -> Array:
         """Returns the torque on each joint, (n,), N m."""

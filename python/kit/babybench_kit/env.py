@@ -15,7 +15,8 @@ from numpy.typing import ArrayLike, NDArray
 from . import tables
 from .actuation import MODELS, ActuationModel, EngineActuation, SpringDamperModel
 from .core import Core
-from .mimo_env import DEFAULT_SIZE, EMOTES, SCENE_NAME, MIMoEnv
+from .mimo_env import _ORIGINAL, DEFAULT_SIZE, EMOTES, SCENE_NAME, MIMoEnv
+from .replaceable import replaced
 from .sensing import Observation
 from .utils import get_child_bodies, get_geoms_for_body
 
@@ -114,7 +115,8 @@ class BabyBenchEnv(MIMoEnv):
     def _settle(self) -> None:
         """Lets the scene come to rest; episodes start there."""
         core = self._core
-        if core.place is None and isinstance(self.actuation_model, EngineActuation):
+        own = replaced(self, _ORIGINAL, ("set_state", "_set_action", "_single_mujoco_step"))
+        if core.place is None and isinstance(self.actuation_model, EngineActuation) and not own:
             # the engine has done that
             self.init_qpos, self.init_qvel = core.blueprint.init_qpos, core.blueprint.init_qvel
             core.forward(self.init_qpos, self.init_qvel)

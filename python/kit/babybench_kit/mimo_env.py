@@ -21,6 +21,7 @@ from .actuation import MODELS, ActuationModel, SpringDamperModel
 from .core import Core
 from .course import Share
 from .renderer import MujocoRenderer
+from .replaceable import refuse_uncalled, replaced
 from .scene import Scene, read_scene
 from .sensing import Observation, SensingEnv
 from .settings import engine_config
@@ -47,6 +48,9 @@ _WITHIN_STEP = (
     "_get_obs",
 )
 """Methods between the start of a step and its observation."""
+
+_UNCALLED = ("_step_mujoco_simulation", "viewer_setup")
+"""Methods of Gymnasium's ``MujocoEnv`` that nothing calls here."""
 
 _DEFAULT_SCENE = Scene(
     keys={"scene": "base", **{f"act_{part}": True for part in tables.PARTS}},
@@ -97,6 +101,11 @@ class MIMoEnv(SensingEnv):
     _ezpickle_args: tuple[Any, ...]
     _ezpickle_kwargs: dict[str, Any]
 
+    def __init_subclass__(cls, **arguments: Any) -> None:
+        """Refuses subclasses that replace methods which are never called."""
+        super().__init_subclass__(**arguments)
+        refuse_uncalled(cls, _UNCALLED, "replace _single_mujoco_step, render or _reset_simulation")
+
     def __new__(cls, *args: Any, **kwargs: Any) -> MIMoEnv:
         """Remembers the arguments, for copies and pickles."""
         env = super().__new__(cls)
@@ -132,12 +141,14 @@ class MIMoEnv(SensingEnv):
         self.width, self.height = width, height
         self.render_mode, self.camera_id, self.camera_name = render_mode, camera_id, camera_name
         self.fullpath = os.path.abspath(model_path)
-        self._core = self._compile(_known_scene(model_path), actuation_model, config or {})
-        self._name_parts()
         self._initial_qpos = initial_qpos
-        self._set_initial_position(initial_qpos)
-        self.actuation_model: ActuationModel = actuation_model(self, self.mimo_actuators)
-        self._core.plain_actuation = actuation_model in MODELS.values()
+        self._actuation, self._config = actuation_model, config or {}
+        self._initialize_simulation()
+        if "_core" not in self.__dict__:
+            raise TypeError(
+                f"{type(self).__name__}._initialize_simulation does not call that of MIMoEnv: the engine compiles the scene "
+                "there, and takes no other model; call super()._initialize_simulation() and change env.model after it"
+            )
         self._set_action_space()
         self._own_seed = self.action_space.np_random
         self.mujoco_renderer = MujocoRenderer(self._core, default_camera_config)
@@ -150,11 +161,20 @@ class MIMoEnv(SensingEnv):
         self._set_observation_space()
 
     def _share_of_the_script(self) -> Share:
-        """Returns what of this environment a subclass has replaced."""
+        """Returns what of this environment a script has replaced."""
+        model = self.actuation_model
+        self._core.plain_actuation = type(model) in MODELS.values() and not model.changed
         if not self._observes_plainly():
             return Share.SENSES
-        kept = all(getattr(type(self), method) is getattr(MIMoEnv, method) for method in _WITHIN_STEP)
-        return Share.NOTHING if kept else Share.STEP
+        return Share.STEP if replaced(self, _ORIGINAL, _WITHIN_STEP) else Share.NOTHING
+
+    def _initialize_simulation(self) -> None:
+        """Compiles the scene, and makes the actuation model."""
+        self._core = self._compile(_known_scene(self.fullpath), self._actuation, self._config)
+        self._name_parts()
+        self._set_initial_position(self._initial_qpos)
+        self.actuation_model: ActuationModel = self._actuation(self, self.mimo_actuators)
+        self._core.plain_actuation = self._actuation in MODELS.values()
 
     def _compile(self, scene: Scene, actuation_model: type[ActuationModel], config: Mapping[str, Any]) -> Core:
         """Compiles a scene for the senses and the actuation that the arguments ask for."""
@@ -176,10 +196,9 @@ class MIMoEnv(SensingEnv):
         """Finds what is MIMo's in the scene."""
         core = self._core
         self.metadata = {**type(self).metadata, "render_fps": round(1 / self.dt)}
-        self.mimo_joints = core.mimo_joints
-        actuators = core.names["actuator"]
-        self.mimo_actuators = np.asarray([i for i, name in enumerate(actuators) if name.startswith("act:")])
-        self._find_faces()
+        self._get_joints()
+        self._get_actuators()
+        self._get_facial_expressions(EMOTES)
         self.init_qpos: Array = np.array(core.blueprint.model_array("qpos0"))
         self.init_qvel: Array = np.zeros(core.blueprint.model_options["nv"])
         if core.place is not None:
@@ -226,10 +245,20 @@ class MIMoEnv(SensingEnv):
 
     # --- construction ---
 
-    def _find_faces(self) -> None:
+    def _get_joints(self) -> None:
+        """Finds :attr:`mimo_joints`."""
+        self.mimo_joints = self._core.mimo_joints
+
+    def _get_actuators(self) -> None:
+        """Finds :attr:`mimo_actuators`."""
+        names = enumerate(self._core.names["actuator"])
+        self.mimo_actuators = np.asarray([number for number, name in names if name.startswith("act:")])
+
+    def _get_facial_expressions(self, emotion_textures: Mapping[str, str]) -> None:
+        """Finds :attr:`facial_expressions`: the ids of the textures that ``emotion_textures`` names by expressions."""
         textures: list[str] = _native.model_extras(self._core.blueprint)["texture"]
         self.facial_expressions = {
-            emotion: textures.index(name) for emotion, name in EMOTES.items() if name in textures
+            emotion: textures.index(name) for emotion, name in emotion_textures.items() if name in textures
         }
 
     def _set_initial_position(self, initial_qpos: Mapping[str, ArrayLike] | None) -> None:
@@ -300,7 +329,11 @@ class MIMoEnv(SensingEnv):
             self.action_space.seed(seed)
             self._own_seed = self.action_space._np_random
         self._reset_simulation()
-        return self.reset_model(), {}
+        return self.reset_model(), self._get_reset_info()
+
+    def _get_reset_info(self) -> dict[str, Any]:
+        """Returns the information of a reset: nothing."""
+        return {}
 
     def _advance(self, action: ArrayLike) -> Observation:
         """Applies an action, and returns what is sensed then."""
@@ -395,6 +428,19 @@ class MIMoEnv(SensingEnv):
 
 
 _REMADE = frozenset(
-    {"_core", "mujoco_renderer", "touch", "proprioception", "vision", "vestibular", "actuation_model", "_own_seed"}
+    {
+        "_core",
+        "mujoco_renderer",
+        "touch",
+        "proprioception",
+        "vision",
+        "vestibular",
+        "actuation_model",
+        "_own_seed",
+        "run_folder",
+    }
 )
 """Attributes that a copy makes anew."""
+
+_ORIGINAL = {**vars(SensingEnv), **vars(MIMoEnv)}
+"""Methods as this module and :mod:`.sensing` define them."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import importlib
 import os
+import warnings
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -79,6 +80,9 @@ def make_env(config: Mapping[str, Any] | None = None, training: bool = True) -> 
             the senses: without them the senses are the kit's own.
         training: Whether this is training.
 
+    Warns:
+        UserWarning: Another process trains into this folder, or a log of an earlier run is there, which will be replaced.
+
     Raises:
         AssertionError: There is no scene to evaluate.
         TypeError: What is given is not a mapping.
@@ -91,8 +95,10 @@ def make_env(config: Mapping[str, Any] | None = None, training: bool = True) -> 
         raise ValueError(f"configuration: behavior is {behavior!r}, expected one of {', '.join(ENVS)}{meant}")
     scene_path = Path(config["save_dir"]) / "scene.xml"
     own_assets = _mimo()
+    folder = None
     if training is True:
         make_save_dirs(config["save_dir"])
+        folder = _own(config["save_dir"])
         assets = own_assets or str(kit_assets() or assets_folder())
         scene_path.write_text(build(config, path_to_assets=assets) + "\n", encoding="utf-8")
     else:
@@ -100,7 +106,7 @@ def make_env(config: Mapping[str, Any] | None = None, training: bool = True) -> 
             raise AssertionError(f"{scene_path.parent}: there is no such folder; was this configuration trained?")
         if not scene_path.exists():
             raise AssertionError(f"{scene_path}: there is no such file; was this configuration trained?")
-    return gym.make(
+    env: Any = gym.make(
         ENVS[behavior],
         model_path=str(scene_path.resolve()),
         actuation_model=config["actuation_model"],
@@ -111,3 +117,27 @@ def make_env(config: Mapping[str, Any] | None = None, training: bool = True) -> 
         config=config,
         training=training,
     )
+    env.unwrapped.run_folder = folder
+    return env
+
+
+def _own(save_dir: str | os.PathLike[str]) -> _native.Folder | None:
+    """Takes possession of the folder of a run, and warns where the logs of two runs would mix.
+
+    The kit goes on without a word, so that these are warnings where the command line refuses.
+    """
+    log = Path(save_dir) / "logs" / "training.pkl"
+    try:
+        folder = _native.Folder(save_dir)
+    except OSError as error:
+        warnings.warn(
+            f"make_env: {error}: both write {log}, and the records of the one that writes last remain", stacklevel=3
+        )
+        return None
+    if log.exists() and log.stat().st_size > 0:
+        warnings.warn(
+            f"make_env: {log} is the log of an earlier run, which this one replaces when it logs; choose another save_dir to "
+            "keep it",
+            stacklevel=3,
+        )
+    return folder

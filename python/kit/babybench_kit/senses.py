@@ -13,6 +13,8 @@ from numpy.typing import NDArray
 
 from babybench_core import _native
 
+from .replaceable import Replaceable
+
 if TYPE_CHECKING:
     from .sensing import SensingEnv
 
@@ -21,8 +23,11 @@ Array = NDArray[np.float64]
 _OUTPUTS = (("qpos", ""), ("qvel", "velocity"), ("torques", "torque"), ("limits", "limits"), ("actuation", "actuation"))
 """Parts of the output, and the components that turn them on; positions are always there."""
 
+_THRESHOLD = 0.035
+"""Distance from a limit at which the engine feels it, rad."""
 
-class Proprioception:
+
+class Proprioception(Replaceable):
     """The interface of proprioception.
 
     Attributes:
@@ -81,11 +86,7 @@ class SimpleProprioception(Proprioception):
             ("limits", "limit", self.joint_names),
         )
         self.sensor_names = {"qpos": self.joint_names, **{key: of for component, key, of in labels if component in on}}
-        self.limit_thresh = (proprio_parameters or {}).get("threshold", 0.035)
-        if self.limit_thresh != 0.035:
-            raise ValueError(
-                "proprio_params: the engine feels limits from 0.035 rad on; another threshold is not served"
-            )
+        self.limit_thresh = (proprio_parameters or {}).get("threshold", _THRESHOLD)
         where = env._core.layout
         keys = [key for key, component in _OUTPUTS if not component or component in on]
         self._parts = _native.Blocks(
@@ -94,6 +95,9 @@ class SimpleProprioception(Proprioception):
         self._shown = -1
         self._outputs: dict[str, Array] = {}
         self._all = set(on) == set(self.VALID_COMPONENTS)
+        self._made()
+        if self.limit_thresh != _THRESHOLD:
+            self._changed.add("limit_thresh")
 
     @property
     def sensor_outputs(self) -> dict[str, Array]:
@@ -108,15 +112,34 @@ class SimpleProprioception(Proprioception):
     def get_proprioception_obs(self) -> Array:
         """Senses, and returns the parts of the output in alphabetical order, (n,)."""
         self._core.observe()
-        if self._all and self._core.plain_actuation:
+        if self._all and self._core.plain_actuation and not self.changed:
             return self._core.proprioception()
+        if self.changed:
+            self.sensor_outputs = self._sensed()
         outputs = self.sensor_outputs
         if not self._core.plain_actuation and "actuation" in outputs:
             outputs["actuation"] = np.asarray(self.env.actuation_model.observations()).flatten()
         return np.concatenate([outputs[key] for key in sorted(outputs)])
 
+    def _sensed(self) -> dict[str, Array]:
+        """Returns the parts of the output from the attributes of this sense, some of which a script has replaced."""
+        read, on = self._core.engine.state_array, self.output_components
+        angles = read("qpos")[self.joint_qpos].ravel()
+        outputs = {"qpos": angles}
+        if "velocity" in on:
+            outputs["qvel"] = read("qvel")[self.joint_qvel].ravel()
+        if "torque" in on:
+            outputs["torques"] = read("sensordata")[self.sensor_addrs].ravel()
+        if "limits" in on:
+            below, above = np.asarray(self.joint_limits).T
+            nearest = np.minimum(angles - below, above - angles) - self.limit_thresh
+            outputs["limits"] = np.maximum(0.0, -nearest / self.limit_thresh)
+        if "actuation" in on:
+            outputs["actuation"] = np.ravel(self.env.actuation_model.observations())
+        return outputs
 
-class Vestibular:
+
+class Vestibular(Replaceable):
     """The interface of the sense of balance.
 
     Attributes:
@@ -155,14 +178,19 @@ class SimpleVestibular(Vestibular):
         self._where = slice(int(flat[0]), int(flat[-1]) + 1) if side_by_side else flat
         self._shown = -1
         self._outputs: Array = np.zeros(0)
+        self._made()
 
     @property
     def sensor_outputs(self) -> Array:
         """Returns the last output, (n,)."""
         if self._shown != self._core.observed:
-            self._outputs = self._core.engine.state_array("sensordata")[self._where]
-            self._shown = self._core.observed
+            where = np.ravel(self.sensor_addrs) if self.changed else self._where
+            self.sensor_outputs = self._core.engine.state_array("sensordata")[where]
         return self._outputs
+
+    @sensor_outputs.setter
+    def sensor_outputs(self, outputs: Array) -> None:
+        self._outputs, self._shown = outputs, self._core.observed
 
     def get_vestibular_obs(self) -> Array:
         """Senses, and returns the output, (n,)."""
@@ -170,7 +198,7 @@ class SimpleVestibular(Vestibular):
         return np.array(self.sensor_outputs)
 
 
-class Vision:
+class Vision(Replaceable):
     """The interface of vision.
 
     Attributes:
@@ -197,15 +225,22 @@ class SimpleVision(Vision):
         super().__init__(env, camera_parameters)
         self._shown = -1
         self._outputs: dict[str, NDArray[np.uint8]] = {}
+        self._made()
 
     @property
     def sensor_outputs(self) -> dict[str, NDArray[np.uint8]]:
         """Returns what the eyes saw last, (height, width, 3) each, red, green and blue."""
         if self._shown != self._core.observed:
-            seen = self._core.observation()
-            self._outputs = {camera: seen[camera] for camera in self.camera_parameters}
-            self._shown = self._core.observed
+            engine, seen = self._core.engine, {} if self.changed else self._core.observation()
+            self.sensor_outputs = {
+                camera: seen[camera] if camera in seen else engine.render(camera, size["width"], size["height"])
+                for camera, size in self.camera_parameters.items()
+            }
         return self._outputs
+
+    @sensor_outputs.setter
+    def sensor_outputs(self, outputs: dict[str, NDArray[np.uint8]]) -> None:
+        self._outputs, self._shown = outputs, self._core.observed
 
     def get_vision_obs(self) -> dict[str, NDArray[np.uint8]]:
         """Looks, and returns what the eyes see, (height, width, 3) each."""

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from .actuation import ActuationModel
 from .core import Core
 from .course import Share
+from .replaceable import Replaceable, replaced
 from .senses import Proprioception, SimpleProprioception, SimpleVestibular, SimpleVision, Vestibular, Vision
 from .touch import Touch, TrimeshTouch
 
@@ -19,6 +20,7 @@ Observation = dict[str, NDArray[Any]]
 Array = NDArray[np.float64]
 
 _HOOKS = ("get_proprio_obs", "get_touch_obs", "get_vision_obs", "get_vestibular_obs")
+_PARTS = ("proprioception", "touch", "vision", "vestibular", "actuation_model")
 
 
 class SensingEnv(gym.Env):  # type: ignore[type-arg,unused-ignore]
@@ -79,14 +81,30 @@ class SensingEnv(gym.Env):  # type: ignore[type-arg,unused-ignore]
             boxes[key] = spaces.Box(low, high, shape=value.shape, dtype=value.dtype.type)
         self.observation_space = spaces.Dict(boxes)
 
+    def __setattr__(self, name: str, value: Any) -> None:
+        super().__setattr__(name, value)
+        if name in _PARTS or callable(getattr(type(self), name, None)):
+            self._reconsider()
+
+    def _reconsider(self) -> None:
+        """Takes note that a script has replaced a part or a method of this environment."""
+        if "_share" in self.__dict__:
+            self.__dict__["_share"] = self._share_of_the_script()
+
+    def _share_of_the_script(self) -> Share:
+        """Returns what of this environment a script has replaced."""
+        raise NotImplementedError
+
     def _observes_plainly(self) -> bool:
         """Tells whether the observation is the engine's, with nothing replaced."""
         known = (SimpleProprioception, TrimeshTouch, SimpleVision, SimpleVestibular, type(None))
         senses = (self.proprioception, self.touch, self.vision, self.vestibular)
         components = set((self.proprio_params or {}).get("components", ()))
         return (
-            all(getattr(type(self), hook) is getattr(SensingEnv, hook) for hook in _HOOKS)
+            not replaced(self, _ORIGINAL, _HOOKS)
             and all(type(sense) in known for sense in senses)
+            and not any(sense.changed for sense in senses if isinstance(sense, Replaceable))
+            and (self.touch is None or self.touch.plain)
             and components == set(SimpleProprioception.VALID_COMPONENTS)
             and self._core.plain_actuation
             and not self.goals_in_observation
@@ -138,3 +156,6 @@ class SensingEnv(gym.Env):  # type: ignore[type-arg,unused-ignore]
     def get_achieved_goal(self) -> Any:
         """Returns what is reached at present."""
         raise NotImplementedError
+
+
+_ORIGINAL = dict(vars(SensingEnv))

@@ -40,11 +40,11 @@ def _touch(params: Mapping[str, Any]) -> dict[str, Any]:
     """Returns the keys of a configuration that give the sensors of touch parameters."""
     scales = params["scales"]
     factors = {round(scale / SPACING_V1[body], 12) for body, scale in scales.items() if body in SPACING_V1}
-    keys: dict[str, Any] = {
-        "touch_active": True,
-        "touch_function": params["touch_function"],
-        "touch_response": params["response_function"],
-    }
+    keys: dict[str, Any] = {"touch_active": True}
+    for key, function in (("touch_function", "touch_function"), ("touch_response", "response_function")):
+        # a name that the engine does not have is that of a method of the sense, which does without the engine
+        known = _native.config_keys()[key]["choices"]
+        keys[key] = params[function] if params[function] in known else known[-1]
     groups = {part: [body for body in SPACING_V1 if PART_OF_BODY[body] == part] for part in PARTS}
     for part, bodies in groups.items():
         on = [body in scales for body in bodies]

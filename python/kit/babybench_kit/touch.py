@@ -5,6 +5,7 @@ It runs in the engine. These classes show where the sensors are and what they fe
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any, Callable, ClassVar
 
 import numpy as np
@@ -14,9 +15,11 @@ from babybench_core import _native
 
 from . import utils
 from .course import Share
+from .replaceable import Replaceable, replaced
 from .utils import EPS
 
 if TYPE_CHECKING:
+    from ..records import TouchBody
     from .sensing import SensingEnv
 
 Array = NDArray[np.float64]
@@ -52,7 +55,29 @@ def scale_linear(force: ArrayLike, distances: ArrayLike, scale: float, **_: Any)
     return np.asarray(weights[:, None] * np.asarray(force))
 
 
-class Touch:
+class Spacings(dict[int, float]):
+    """Distances between the sensors of each body, by its id, m; a script may write to them."""
+
+    def __init__(self, spacings: dict[int, float], written: Callable[[], None]) -> None:
+        """Takes the distances, and what is called after a change."""
+        super().__init__(spacings)
+        self._written = written
+
+    def __setitem__(self, body: int, spacing: float) -> None:
+        super().__setitem__(body, spacing)
+        self._written()
+
+    def update(self, *spacings: Any, **named: Any) -> None:
+        """Replaces some of the distances."""
+        super().update(*spacings, **named)
+        self._written()
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Makes a copy a plain dictionary."""
+        return dict, (dict(self),)
+
+
+class Touch(Replaceable):
     """The interface of touch.
 
     Attributes:
@@ -72,7 +97,8 @@ class Touch:
         self.env = env
         self._core = env._core
         ids = {name: number for number, name in enumerate(env._core.names["body"])}
-        self.sensor_scales = {ids[body]: scale for body, scale in touch_params["scales"].items()}
+        scales = {ids[body]: scale for body, scale in touch_params["scales"].items()}
+        self.sensor_scales: dict[int, float] = Spacings(scales, self._taken_over)
         self.touch_type: str = touch_params["touch_function"]
         self.response_type: str = touch_params["response_function"]
         for value, valid in (
@@ -85,6 +111,11 @@ class Touch:
         self.touch_size = self.VALID_TOUCH_TYPES[self.touch_type]
         self.response_function: Callable[..., None] = getattr(self, self.response_type)
         self.sensor_positions: dict[int, Array] = {}
+
+    @property
+    def plain(self) -> bool:
+        """Whether the engine computes the output."""
+        return False
 
     def get_touch_obs(self) -> NDArray[np.float32]:
         """Feels, and returns the output, (sensors, touch_size)."""
@@ -113,19 +144,20 @@ class TrimeshTouch(Touch):
     VALID_TOUCH_TYPES: ClassVar[dict[str, int]] = {"force_vector": 3, "force_vector_global": 3, "normal_force": 3}
     VALID_RESPONSE_FUNCTIONS: ClassVar[list[str]] = ["nearest", "spread_linear"]
 
-    _steps = (
-        "force_vector",
-        "force_vector_global",
-        "normal_force",
-        "nearest",
-        "spread_linear",
-        "get_contacts",
-        "get_raw_force",
-        "get_contact_normal",
-        "get_contact_position_relative",
-        "get_nearest_sensor",
-        "get_sensors_within_distance",
+    _uncalled = frozenset(
+        {
+            "add_body",
+            "visualize_contacts_subtree",
+            "_convert_active_sensor_idx",
+            "_get_mesh",
+            "_get_mesh_adjacency_graph",
+            "_get_nearest_vertex",
+            "_get_sensor_count_submesh",
+            "_nearest_k_search",
+            "_nearest_within_distance_search",
+        }
     )
+    _instead = "replace get_nearest_sensor or get_sensors_within_distance, which find the sensors near a contact"
 
     def __init__(self, env: SensingEnv, touch_params: dict[str, Any]) -> None:
         """Belongs to an environment."""
@@ -135,7 +167,8 @@ class TrimeshTouch(Touch):
         if missing:
             raise ValueError(f"touch: the engine has no sensors on {', '.join(missing)}")
         self.sensor_positions = {body: np.asarray(layout[body]["positions"]) for body in self.sensor_scales}
-        self.meshes = {body: SensorMesh(positions) for body, positions in self.sensor_positions.items()}
+        self._check_spacings(layout)
+        self.meshes = {body: SensorMesh(_fixed(positions)) for body, positions in self.sensor_positions.items()}
         self.active_vertices = {body: np.ones(len(p), dtype=bool) for body, p in self.sensor_positions.items()}
         self.plotting_limits: dict[int, float] = {}
         self._sensor_counts = {body: len(positions) for body, positions in self.sensor_positions.items()}
@@ -144,13 +177,57 @@ class TrimeshTouch(Touch):
         self._shape = (-1, self.touch_size)
         self._shown = self._felt = -1
         self._outputs: dict[int, NDArray[np.float32]] = {}
+        self._share = Share.NOTHING
         self._contacts: list[tuple[int, int, Array]] = []
         self._inverted: dict[str, NDArray[Any]] | None = None
         env._core.frames = self._frames
         self._sensed = np.isin(env._core.body_of_geom, list(self.sensor_positions))
-        # a subclass that changes a step computes all of them in Python
-        kept = all(getattr(type(self), step) is getattr(TrimeshTouch, step) for step in self._steps)
-        self._share = Share.NOTHING if kept else Share.SENSES
+        if not self._feels_as_the_engine(len(layout)):
+            self._share = Share.SENSES
+            self._outputs = self.get_empty_sensor_dict(self.touch_size)
+        self._made()
+
+    def _check_spacings(self, layout: dict[int, TouchBody]) -> None:
+        """Refuses distances between sensors that are not those of the environment's.
+
+        Raises:
+            ValueError: The text names the first body.
+        """
+        for body, spacing in self.sensor_scales.items():
+            known = layout[body]["spacing"]
+            if abs(spacing - known) > 1e-9 * known:
+                raise ValueError(
+                    f"touch_params: the sensors of {self._core.names['body'][body]} are {known:g} m apart in this "
+                    f"environment, not {spacing:g} m: give the distances to the environment's own touch_params"
+                )
+
+    def _feels_as_the_engine(self, bodies: int) -> bool:
+        """Tells whether no step from a contact to the output is a subclass's own, or another one than the engine's."""
+        config = self._core.config
+        return (
+            len(self.sensor_scales) == bodies
+            and self.touch_size == _SIZES.get(self.touch_type)
+            and config["touch_function"] == self.touch_type
+            and config["touch_response"] == self.response_type
+            and not replaced(self, _ORIGINAL, _STEPS)
+        )
+
+    @property
+    def plain(self) -> bool:
+        """Whether the engine computes the output."""
+        return self._share is Share.NOTHING
+
+    def _taken_over(self) -> None:
+        """Computes in Python from now on, as a script has replaced a step."""
+        if "_parts_of_mimo" not in self.__dict__ or self._share is not Share.NOTHING:
+            return
+        if self._felt_by_engine():
+            self._frames()  # while the normals are known to be the engine's
+            self._outputs = self._skin.felt(self._core.observed)
+        else:
+            self._outputs = self.get_empty_sensor_dict(self.touch_size)
+        self._share = Share.SENSES
+        super()._taken_over()
 
     # --- sensors ---
 
@@ -170,12 +247,13 @@ class TrimeshTouch(Touch):
         """Returns the number of all sensors."""
         return sum(self._sensor_counts.values())
 
-    def _distances(self, contact_pos: ArrayLike, body_id: int) -> Array:
-        return np.asarray(np.linalg.norm(self.sensor_positions[body_id] - np.asarray(contact_pos), axis=-1))
+    def _sensor_distances(self, point: ArrayLike, mesh: SensorMesh) -> Array:
+        """Returns the distances, m, between a point and the sensors of a mesh."""
+        return np.asarray(np.linalg.norm(mesh.vertices - np.asarray(point), axis=-1))
 
     def get_nearest_sensor(self, contact_pos: ArrayLike, body_id: int) -> tuple[int, float]:
         """Returns the sensor of a body that is nearest to a point, frame of the body, and its distance, m."""
-        distances = self._distances(contact_pos, body_id)
+        distances = self._sensor_distances(contact_pos, self.meshes[body_id])
         nearest = int(distances.argmin())
         return nearest, float(distances[nearest])
 
@@ -183,7 +261,7 @@ class TrimeshTouch(Touch):
         self, contact_pos: ArrayLike, body_id: int, k: int, k_margin: float = 1.4
     ) -> tuple[NDArray[np.int_], Array]:
         """Returns the k sensors of a body that are nearest to a point, frame of the body, and their distances, m."""
-        distances = self._distances(contact_pos, body_id)
+        distances = self._sensor_distances(contact_pos, self.meshes[body_id])
         nearest = np.argsort(distances, kind="stable")[:k]
         return nearest, distances[nearest]
 
@@ -191,7 +269,7 @@ class TrimeshTouch(Touch):
         self, contact_pos: ArrayLike, body_id: int, distance_limit: float, distance_margin: float = 1.5
     ) -> tuple[NDArray[np.int_], Array]:
         """Returns the sensors of a body within a distance of a point, frame of the body, and their distances, m."""
-        distances = self._distances(contact_pos, body_id)
+        distances = self._sensor_distances(contact_pos, self.meshes[body_id])
         near = np.flatnonzero(distances < distance_limit)
         return near, distances[near]
 
@@ -209,7 +287,7 @@ class TrimeshTouch(Touch):
     def get_contact_position_relative(self, contact_id: int, body_id: int) -> Array:
         """Returns the point of a contact on the surface of a body, frame of the body, m."""
         contacts = self._core.contacts()
-        point = utils.world_pos_to_body(self._core.poses, contacts["pos"][contact_id], body_id)
+        point = utils.world_pos_to_body(self._core.poses, self.get_contact_position_world(contact_id), body_id)
         distance = contacts["dist"][contact_id]
         if distance >= 0:
             return point
@@ -258,22 +336,20 @@ class TrimeshTouch(Touch):
 
     def get_contacts(self) -> list[tuple[int, int, Array]]:
         """Returns contact, body and force (``touch_function``) for each sensing side of each contact that is felt."""
-        contacts = self._core.contacts()
-        sides = []
+        contacts, sides = self._core.contacts(), []
+        own_force = bool(replaced(self, _ORIGINAL, ("get_raw_force",)))
         for number, normal in enumerate(contacts["force"][:, 0].tolist()):
-            if abs(normal) < _LEAST_FORCE:
-                continue
-            for geom in (contacts["geom1"][number], contacts["geom2"][number]):
-                body = int(self._core.body_of_geom[geom])
-                if self.has_sensors(body):
-                    sides.append((number, body, self.touch_function(number, body)))
-        self._contacts, self._felt = sides, self._core.observed
+            pair = [int(self._core.body_of_geom[contacts[geom][number]]) for geom in ("geom1", "geom2")]
+            sensing = [body for body in pair if self.has_sensors(body)]
+            if sensing and abs(self.get_raw_force(number, pair[0])[0] if own_force else normal) >= _LEAST_FORCE:
+                sides += [(number, body, self.touch_function(number, body)) for body in sensing]
+        self.contact_tuples = sides
         return sides
 
     @property
     def contact_tuples(self) -> list[tuple[int, int, Array]]:
         """Returns what :meth:`get_contacts` found when touch was last felt."""
-        if self._felt == self._core.observed:
+        if self._share is Share.SENSES or self._felt == self._core.observed:
             return self._contacts
         felt = self._felt_by_engine()
         self._frames()
@@ -285,13 +361,19 @@ class TrimeshTouch(Touch):
             self._invert(contacts)
         return sides
 
+    @contact_tuples.setter
+    def contact_tuples(self, sides: list[tuple[int, int, Array]]) -> None:
+        self._contacts, self._felt = sides, self._core.observed
+
     # --- output ---
 
     @property
     def sensor_outputs(self) -> dict[int, NDArray[np.float32]]:
         """Returns what the sensors of each body felt last, (n, touch_size), N, in the order of ``sensor_positions``."""
         moment = self._core.observed
-        return self._outputs if self._shown == moment else self._skin.felt(moment)
+        if self._share is Share.SENSES or self._shown == moment:
+            return self._outputs
+        return self._skin.felt(moment)
 
     @sensor_outputs.setter
     def sensor_outputs(self, outputs: dict[int, NDArray[np.float32]]) -> None:
@@ -299,7 +381,7 @@ class TrimeshTouch(Touch):
 
     def get_empty_sensor_dict(self, size: int) -> dict[int, NDArray[np.float32]]:
         """Returns zeros for each body, (n, size)."""
-        return {body: np.zeros((count, size), dtype=np.float32) for body, count in self._sensor_counts.items()}
+        return {body: np.zeros((self.get_sensor_count(body), size), dtype=np.float32) for body in self.meshes}
 
     def flatten_sensor_dict(self, sensor_dict: dict[int, NDArray[Any]]) -> NDArray[Any]:
         """Returns the arrays of all bodies, by ascending id, as one: (sensors, size)."""
@@ -382,3 +464,33 @@ class TrimeshTouch(Touch):
         """Plots what the sensors of a body and of those below it feel with matplotlib, and returns figure and axes."""
         root = self._bodies([], [body_name or ""])[0] if body_id is None else body_id
         return self._plot(utils.get_child_bodies(self._core.tree, root), title, forces=True)
+
+
+def _fixed(array: Array) -> Array:
+    """Returns a view that cannot be written to."""
+    view: Array = array.view()
+    view.flags.writeable = False
+    return view
+
+
+_SIZES = dict(TrimeshTouch.VALID_TOUCH_TYPES)
+_ORIGINAL = dict(vars(TrimeshTouch))
+_STEPS: Iterable[str] = (
+    *_SIZES,
+    *TrimeshTouch.VALID_RESPONSE_FUNCTIONS,
+    "contact_tuples",
+    "flatten_sensor_dict",
+    "get_contact_normal",
+    "get_contact_position_relative",
+    "get_contact_position_world",
+    "get_contacts",
+    "get_empty_sensor_dict",
+    "get_nearest_sensor",
+    "get_raw_force",
+    "get_sensor_count",
+    "get_sensors_within_distance",
+    "has_sensors",
+    "sensor_outputs",
+    "_sensor_distances",
+)
+"""Methods between a contact and the output, as this module defines them: a script that replaces one has all called."""
