@@ -324,3 +324,16 @@ fn all_behaviors_and_actuation_models_run_from_the_command_line() {
         }
     }
 }
+
+#[test]
+fn examples_have_names() {
+    let folder = Folder::new("example_names");
+    for name in ["self_touch", "reach"] {
+        let out = babybench(folder.path(), &["inspect", "--config", name]);
+        assert!(out.status.success(), "{name}: {}", text(&out));
+    }
+    refused(folder.path(), &["inspect", "--config", "self_tuch"], &["self_tuch"]);
+    // a file of that name comes first
+    std::fs::write(folder.path().join("reach"), "behaviour: none").expect("a file");
+    refused(folder.path(), &["inspect", "--config", "reach"], &["behaviour"]);
+}

@@ -110,8 +110,15 @@ class Recorder:
         """Starts an episode at the current moment."""
     def step(self, env: Env, action: npt.ArrayLike) -> tuple[dict[str, _Array], float, bool, bool]:
         """Applies an action, as ``Env.step`` does, and records the result."""
-    def end(self, env: Env) -> None:
-        """Writes the episode."""
+    def end(self, env: Env, unfinished: bool = False) -> bool:
+        """Writes the episode, marked if it was abandoned. Returns whether it had steps."""
+
+@final
+class Folder:
+    """A folder that belongs to this process as long as the object lives."""
+
+    def __new__(cls, folder: str | os.PathLike[str]) -> Folder:
+        """Takes possession of the folder; an ``OSError`` names the process that has it."""
 
 @final
 class Blueprint:
@@ -240,6 +247,10 @@ class Env:
 
         The next step, or :meth:`forward`, computes derived quantities.
         """
+    def push(
+        self, body: int, force: Sequence[float], torque: Sequence[float], point: Sequence[float] | None = None
+    ) -> None:
+        """Puts a force (N, world) at a point (m, world) and a torque (N m) in the place of those that act on a body."""
     def apply_force(self, body: int, force: Sequence[float], point: Sequence[float]) -> None:
         """Adds a force (N, world) on a body at a point (m, world); it acts until :meth:`release_forces` or a reset."""
     def release_forces(self) -> None:
@@ -266,6 +277,8 @@ class Env:
         """Returns an array of the model by MuJoCo's name, with what was changed, or an option: ``opt.gravity``."""
     def change_model(self, changes: dict[str, _Array]) -> None:
         """Changes numbers of the model from the next step on; the arrays are whole."""
+    def set_age(self, age: float | None) -> dict[str, Any]:
+        """Lets MIMo grow to an age in months; returns the configuration. The next call is a reset."""
     @property
     def model_changes(self) -> dict[str, _Array]:
         """The arrays that differ from those of the scene."""
@@ -456,10 +469,21 @@ class VectorEnv:
         threads: int = 0,
         max_memory: int | None = None,
         lazy: bool = False,
+        copies: int = 1,
     ) -> VectorEnv:
         """Makes an environment of each blueprint; ``autoreset`` is ``next_step``, ``same_step`` or ``disabled``.
 
-        With ``lazy``, observations and their spaces are without images: :meth:`eyes` has them.
+        With ``lazy``, observations and their spaces are without images: :meth:`eyes` has them. ``copies`` of all observations
+        that Python keeps count as memory.
+        """
+    @staticmethod
+    def check_memory(
+        blueprint: Blueprint, count: int, autoreset: str, threads: int, max_memory: int | None, copies: int
+    ) -> None:
+        """Refuses more environments than fit, before there are lists of as many.
+
+        Raises:
+            MemoryError: The text says how many would fit.
         """
 
     def reset(
@@ -544,6 +568,8 @@ class VectorEnv:
         """Returns an array of the model by MuJoCo's name, with what was changed, or an option: ``opt.gravity``."""
     def change_model(self, env: int, changes: dict[str, _Array]) -> None:
         """Changes numbers of the model from the next step on; the arrays are whole."""
+    def set_age(self, env: int, age: float | None) -> dict[str, Any]:
+        """Lets the MIMo of one environment grow to an age in months; returns its configuration."""
     def model_changes(self, env: int) -> dict[str, _Array]:
         """Returns the arrays of one environment that differ from those of its scene."""
     def lock(self, env: int, target: str | int, angle: float = 0.0) -> LockReport:
@@ -613,9 +639,9 @@ class Parts:
     def fill_position(self, position: Sequence[_Floats]) -> None:
         """Writes the present positions and velocities."""
     def differences(self, arrays: Sequence[_Floats]) -> int:
-        """Tells which of ``qpos``, ``qvel``, ``ctrl``, ``act`` and ``qfrc_applied`` differ from the state, bits 0 to 4.
+        """Tells which arrays differ from the state, bits 0 to 7.
 
-        Bit 5 tells whether ``xfrc_applied``, where it is given as the sixth, is not zero.
+        They are ``qpos``, ``qvel``, ``ctrl``, ``act``, ``qfrc_applied``, ``xfrc_applied``, ``mocap_pos`` and ``mocap_quat``.
         """
 
 @final

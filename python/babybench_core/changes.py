@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+import operator
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any, Union
 
 import numpy as np
@@ -13,8 +14,32 @@ from babybench_core import _native, hints
 Changes = Mapping[str, Union[npt.ArrayLike, Mapping[str, npt.ArrayLike]]]
 """Arrays of the model by MuJoCo's names, each as a whole or as a mapping from names of elements to their rows."""
 
-_KINDS = {"body": "body", "jnt": "joint", "geom": "geom", "actuator": "actuator", "eq": "equality"}
+_KINDS = {
+    "body": "body",
+    "jnt": "joint",
+    "geom": "geom",
+    "site": "site",
+    "cam": "camera",
+    "actuator": "actuator",
+    "eq": "equality",
+}
 """Kinds of elements by what the names of their arrays begin with."""
+
+_OF_DOFS = frozenset(
+    {
+        *("qvel", "qacc", "qfrc_applied", "qfrc_bias", "qfrc_passive", "qfrc_actuator", "qfrc_smooth", "qacc_smooth"),
+        *("qfrc_constraint", "qacc_warmstart"),
+    }
+)
+"""Arrays of the state with a row for each degree of freedom."""
+
+_STATE_KINDS = {
+    **dict.fromkeys(("xpos", "xquat", "xmat", "xipos", "ximat", "subtree_com", "cvel", "cacc"), "body"),
+    **dict.fromkeys(("cfrc_ext", "cfrc_int", "xfrc_applied"), "body"),
+    **dict.fromkeys(("xanchor", "xaxis"), "joint"),
+    "ctrl": "actuator",
+}
+"""Kinds of elements of the other arrays of the state."""
 
 
 def arrays(
@@ -40,52 +65,174 @@ def _whole(
     if not isinstance(value, Mapping):
         return np.asarray(value)
     array = present(name)
-    prefix = name.split("_")[0]
-    if prefix == "dof":
-        kind, rows = "joint", _rows_of_joints(blueprint)
-    elif prefix in _KINDS:
-        kind = _KINDS[prefix]
-        rows = {found: [k] for k, found in enumerate(blueprint.model_names[kind]) if found}
-    else:
-        raise TypeError(f"{name} is not an array with a row for each element: give it numbers, not a mapping")
     for element, numbers in value.items():
-        if element not in rows:
-            known = [known_name for known_name in rows if known_name]
-            raise KeyError(f"{name}: there is no {kind} {element!r}{hints.nearest(str(element), known)}")
+        rows = rows_of(name, element, blueprint)
         try:
-            array[rows[element]] = numbers
+            array[rows] = numbers
         except ValueError:
-            shape = array[rows[element][0]].shape
+            shape = array[rows if isinstance(rows, int) else rows[0]].shape
             raise ValueError(f"{name}: {element!r} has numbers of the shape {shape}, got {numbers!r}") from None
     return array
 
 
-def _rows_of_joints(blueprint: _native.Blueprint) -> dict[str, list[int]]:
-    joints = blueprint.model_names["joint"]
-    rows: dict[str, list[int]] = {}
-    for row, joint in enumerate(blueprint.model_array("dof_jntid")):
-        rows.setdefault(joints[joint], []).append(row)
-    return rows
+def rows_of(name: str, element: object, blueprint: _native.Blueprint) -> Any:
+    """Returns the row, or the rows, of an element in an array: its number, or a list of a joint's.
+
+    Raises:
+        TypeError: The array does not have a row for each element.
+        KeyError: There is no such element.
+    """
+    if name in _OF_DOFS or name.startswith("dof_"):
+        joint = element_of(name, "joint", element, blueprint)
+        return np.flatnonzero(np.asarray(blueprint.model_array("dof_jntid")) == joint).tolist()
+    if name in ("qpos", "qpos0", "qpos_spring"):
+        joint = element_of(name, "joint", element, blueprint)
+        first, kind = blueprint.model_array("jnt_qposadr")[joint], blueprint.model_array("jnt_type")[joint]
+        return list(range(int(first), int(first) + (7, 4, 1, 1)[int(kind)]))
+    kind = _STATE_KINDS.get(name) or _KINDS.get(name.split("_")[0])
+    if kind is None:
+        raise TypeError(f"{name} is not an array with a row for each element: give it numbers, not a mapping")
+    return element_of(name, kind, element, blueprint)
 
 
-def of_options(options: Union[Mapping[str, Any], None]) -> Any:
-    """Returns the changes that the options of a reset ask for, or nothing."""
-    return None if options is None else options.get("model")
+def element_of(name: str, kind: str, element: object, blueprint: _native.Blueprint) -> int:
+    """Returns the number of an element: a name as the document gives it, or of a geom as ``env.geom_names`` does.
+
+    Raises:
+        KeyError: There is no such element.
+    """
+    names = names_of(kind, blueprint)
+    if isinstance(element, str) and element in names:
+        return names.index(element)
+    known = [known_name for known_name in names if known_name]
+    raise KeyError(f"{name}: there is no {kind} {element!r}{hints.nearest(str(element), known)}")
 
 
-def of_vector(wanted: Any, count: int) -> list[Any]:
-    """Returns the changes of each environment of a vector, from one mapping for all or a list with one or ``None`` for each.
+def element(wanted: Union[str, int], kind: str, blueprint: _native.Blueprint) -> int:
+    """Returns the number of an element that is given by name or by number.
+
+    Raises:
+        KeyError: There is no such element.
+    """
+    if isinstance(wanted, str):
+        return element_of(kind, kind, wanted, blueprint)
+    count = len(blueprint.model_names[kind])
+    number = operator.index(wanted)
+    if not 0 <= number < count:
+        raise KeyError(f"there is no {kind} {number}: their numbers are 0 to {count - 1}")
+    return number
+
+
+def part_names(blueprint: _native.Blueprint) -> list[str]:
+    """Returns the part that each geom is: the body, and which of its geoms."""
+    bodies = [blueprint.model_names["body"][b] for b in blueprint.model_array("geom_bodyid")]
+    count = {body: bodies.count(body) for body in set(bodies)}
+    seen: dict[str, int] = dict.fromkeys(bodies, 0)
+    names = []
+    for body in bodies:
+        seen[body] += 1
+        names.append(body if count[body] == 1 else f"{body} {seen[body]}/{count[body]}")
+    return names
+
+
+def names_of(kind: str, blueprint: _native.Blueprint) -> list[str]:
+    """Returns the names of elements by id, as the document gives them; a geom without one has that of its part."""
+    names = list(blueprint.model_names[kind])
+    if kind != "geom":
+        return names
+    taken = set(names)
+    parts = (part if part not in taken else f"{part} (geom)" for part in part_names(blueprint))
+    return [name or part for name, part in zip(names, parts)]
+
+
+def read(
+    name: str, state: Callable[[str], npt.NDArray[Any]], model: Callable[[str], npt.NDArray[Any]]
+) -> npt.NDArray[Any]:
+    """Returns an array of the state or of the model by its name.
+
+    Raises:
+        KeyError: There is no such array; the text has the nearest names.
+    """
+    if name in _native.Env.STATE_ARRAYS:
+        return state(name)
+    try:
+        return model(name)
+    except KeyError:
+        known = [*_native.Env.STATE_ARRAYS, *_native.Blueprint.MODEL_ARRAYS, *_native.CHANGEABLE]
+        raise KeyError(f"there is no array {name!r}{hints.nearest(name, known)}") from None
+
+
+OPTIONS = ("age", "model")
+"""The options of a reset of one environment."""
+
+
+def options_of(options: object, known: Sequence[str] = OPTIONS) -> Mapping[str, Any]:
+    """Returns the options of a reset.
+
+    Raises:
+        TypeError: Something that is not a mapping.
+        ValueError: An option that there is not.
+    """
+    if options is None:
+        return {}
+    if not isinstance(options, Mapping):
+        raise TypeError(f"the options of a reset are {options!r}, expected a mapping with {', '.join(known)}")
+    for name in options:
+        if name not in known:
+            meant = hints.nearest(str(name), known)
+            raise ValueError(
+                f"options[{name!r}]: there is no such option of a reset; there are {', '.join(known)}{meant}"
+            )
+    return options
+
+
+def of_vector(name: str, wanted: Any, count: int) -> list[Any]:
+    """Returns an option for each environment of a vector: one value for all, or a list with one for each.
 
     Raises:
         TypeError: Something else.
         ValueError: A list of another length.
     """
-    if wanted is None or isinstance(wanted, Mapping):
+    if wanted is None or isinstance(wanted, Mapping) or (np.ndim(wanted) == 0 and np.isscalar(wanted)):
         return [wanted] * count
     try:
         each = list(wanted)
     except TypeError:
-        raise TypeError(f"options['model'] is {wanted!r}, expected a mapping or a list of {count} of them") from None
+        raise TypeError(f"options[{name!r}] is {wanted!r}, expected one value or a list of {count} of them") from None
     if len(each) != count:
-        raise ValueError(f"options['model'] has {len(each)} entries, but there are {count} environments")
+        raise ValueError(f"options[{name!r}] has {len(each)} entries, but there are {count} environments")
     return each
+
+
+def whole(name: str, value: Any, least: int) -> int:
+    """Returns a whole number that is large enough; NumPy's numbers count.
+
+    Raises:
+        TypeError: Something that is not a whole number.
+        ValueError: A smaller one.
+    """
+    try:
+        number = operator.index(value)
+    except TypeError:
+        raise TypeError(f"{name} is {value!r}, expected a whole number") from None
+    if number < least:
+        raise ValueError(f"{name} is {number}, expected at least {least}")
+    return number
+
+
+def seed_of(seed: Any) -> Union[int, None]:
+    """Returns a seed as a whole number; NumPy's numbers count.
+
+    Raises:
+        TypeError: Something that is not a whole number.
+        ValueError: A number below 0, or of more than 64 bits.
+    """
+    if seed is None:
+        return None
+    try:
+        number = operator.index(seed)
+    except TypeError:
+        raise TypeError(f"seed is {seed!r}, expected a whole number or None") from None
+    if not 0 <= number < 2**64:
+        raise ValueError(f"seed is {number}, expected 0 to 2**64 - 1")
+    return number

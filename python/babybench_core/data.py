@@ -20,6 +20,8 @@ from __future__ import annotations
 
 import builtins
 import json
+import warnings
+import weakref
 from collections.abc import Iterator, Mapping
 from functools import cached_property
 from pathlib import Path
@@ -30,6 +32,12 @@ import numpy as np
 from babybench_core.export.methods import Exports
 
 __all__ = ["Episode", "Record", "Recorder", "open"]
+
+_MODEL = "model."
+"""What the names of changed arrays of the model begin with."""
+
+_RECENT = 2
+"""How many episodes a record keeps with the arrays that were read of them."""
 
 FORMAT = "babybench record"
 VERSION = 1
@@ -79,6 +87,29 @@ class Episode(Mapping[str, np.ndarray]):
         return int(self.description["steps"])
 
     @property
+    def finished(self) -> bool:
+        """Whether the episode was ended; otherwise the program gave the recorder up, or ended, in the middle of it."""
+        return not self.description.get("unfinished", False)
+
+    @property
+    def model(self) -> dict[str, np.ndarray]:
+        """What a program had changed of the model before the episode, as ``env.change_model`` takes it."""
+        wanted = [name for name in self._names if name.startswith(_MODEL)]
+        if not wanted:
+            return {}
+        env = self.record.environment(**self._grown)
+        found = {}
+        for name in wanted:
+            shape = np.shape(env.array(name[len(_MODEL) :]))
+            found[name[len(_MODEL) :]] = self[name].reshape(shape)
+        return found
+
+    @property
+    def _grown(self) -> dict[str, Any]:
+        """The age, as a key of the configuration, if it is not that of the record."""
+        return {"age": self.description["age"]} if "age" in self.description else {}
+
+    @property
     def info(self) -> dict[str, Any]:
         """The information of the last step."""
         return dict(self.description["info"])
@@ -109,6 +140,9 @@ class Episode(Mapping[str, np.ndarray]):
             "dist": self["contact_dist"][span],
             "force": self["contact_force"][span],
         }
+
+    def __repr__(self) -> str:
+        return f"<Episode {self.number} of {self.record.folder}: {self.steps} steps>"
 
     def _columns(self) -> dict[str, np.ndarray]:
         """Returns the numbers of each step by name: time, angles, velocities, actions, reward, touch by region."""
@@ -162,6 +196,13 @@ class Record(Exports, Mapping[int, Episode]):
         """Reads the description; see :func:`open`."""
         self.folder = Path(folder)
         path = self.folder / "manifest.json"
+        if not path.is_file():
+            hint = (
+                " (a training's log is read by `babybench report` and figures)"
+                if (self.folder / "logs").is_dir()
+                else ""
+            )
+            raise FileNotFoundError(f"{self.folder}: there is no record, as it has no manifest.json{hint}")
         with builtins.open(path, encoding="utf-8") as file:
             try:
                 manifest = json.load(file)
@@ -173,8 +214,11 @@ class Record(Exports, Mapping[int, Episode]):
             raise ValueError(f"{path}: a record of version {manifest['version']}; this babybench reads up to {VERSION}")
         self.manifest: dict[str, Any] = manifest
         self._descriptions = {int(e["episode"]): e for e in manifest["episodes"]}
+        self._recent: dict[int, Episode] = {}
 
     def __getitem__(self, episode: int) -> Episode:
+        if episode in self._recent:
+            return self._recent[episode]
         if episode not in self._descriptions:
             there = ", ".join(map(str, self._descriptions)) or "none"
             raise KeyError(f"{self.folder}: no episode {episode}; there are {there}")
@@ -182,13 +226,19 @@ class Record(Exports, Mapping[int, Episode]):
         name = description["file"]
         if Path(name).name != name:
             raise ValueError(f"{self.folder}: {name!r} is not the name of a file in this folder")
-        return Episode(self, self.folder / name, description)
+        while len(self._recent) >= _RECENT:
+            del self._recent[next(iter(self._recent))]
+        found = self._recent[episode] = Episode(self, self.folder / name, description)
+        return found
 
     def __iter__(self) -> Iterator[int]:
         return iter(self._descriptions)
 
     def __len__(self) -> int:
         return len(self._descriptions)
+
+    def __repr__(self) -> str:
+        return f"<Record {self.folder}: {len(self)} episodes>"
 
     def skin(self) -> dict[str, np.ndarray]:
         """Returns where the touch sensors are: ``body`` (N), ids, and ``position`` (N, 3) in the frames of the bodies, m."""
@@ -227,7 +277,8 @@ class Record(Exports, Mapping[int, Episode]):
             are fresh. Of a record that is not repeated with the same bits (``record.replay(episode)``) they differ.
         """
         recorded = self[episode]
-        env = self.environment()
+        env = self.environment(**recorded._grown)
+        env.change_model(recorded.model)
         core = env._core
         observation = core.resume(recorded["snapshot"].tobytes())
         yield observation, 0.0, False, False, core.info()
@@ -290,37 +341,73 @@ class Recorder:
 
         Raises:
             FileExistsError: The folder has a record.
+            TypeError: Something that is not a ``babybench.Env``.
         """
         from babybench_core import _native
+        from babybench_core.env import Env
 
         self.env = env.unwrapped
-        self._native = _native.Recorder(self.env._core, folder, senses, eyes_every, policy)
+        if not isinstance(self.env, Env):
+            raise TypeError(
+                f"a Recorder records a babybench.Env, not a {type(self.env).__name__}; of a vector record each environment"
+            )
+        self._native = _native.Recorder(self.env._core, Path(folder).absolute(), senses, eyes_every, policy)
         self._episode = -1
+        self._touch = self.env.observation_space.spaces.get("touch")
+        self._rescue = weakref.finalize(self, _rescue, self._native, self.env, str(folder))
+        self.env._recorders.add(self)
 
     def reset(self, **options: Any) -> tuple[Any, dict[str, Any]]:
-        """Ends the episode, resets the environment, and starts recording the next one."""
+        """Ends the episode, resets the environment, and starts recording the next one.
+
+        What ``options`` and :meth:`babybench.Env.change_model` have changed of the model is recorded with it, and so is the age.
+
+        Raises:
+            ValueError: The age changes the number of touch sensors: use ``touch_grows``.
+        """
         self.end()
         observation, info = self.env.reset(**options)
+        if self._touch != self.env.observation_space.spaces.get("touch"):
+            raise ValueError("a record has one skin, but at this age it has other sensors: set touch_grows: True")
         self._episode += 1
         self._native.begin(self.env._core, self._episode)
         return observation, info
 
     def step(self, action: Any) -> tuple[Any, float, bool, bool, dict[str, Any]]:
-        """Steps the environment, and records the result."""
+        """Steps the environment, and records the result.
+
+        Raises:
+            RuntimeError: There was no :meth:`reset`.
+        """
+        if self._episode < 0:
+            raise RuntimeError("no episode has begun: call the recorder's reset() before its step()")
         core = self.env._core
         observation, reward, terminated, truncated = self._native.step(core, action)
         return observation, reward, terminated, truncated, core.info()
 
     def end(self) -> None:
         """Writes the episode, if it has steps."""
-        if self._episode >= 0:
+        if self._episode >= 0 and not self.env._core.closed:
             self._native.end(self.env._core)
+
+    close = end
 
     def __enter__(self) -> Recorder:
         return self
 
     def __exit__(self, *exception: object) -> None:
         self.end()
+
+
+def _rescue(native: Any, env: Any, folder: str) -> None:
+    """Writes what was recorded of an episode that nobody has ended."""
+    if not env._core.closed and native.end(env._core, unfinished=True):
+        warnings.warn(
+            f"a Recorder was given up in the middle of an episode: its steps are kept in {folder}, marked as unfinished; "
+            "use `with Recorder(...)`, or call its end()",
+            ResourceWarning,
+            stacklevel=2,
+        )
 
 
 def open(folder: Union[str, Path]) -> Record:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import weakref
 from collections.abc import Mapping, Sequence
 from functools import cached_property
 from typing import Any, Optional, Union
@@ -103,6 +104,7 @@ class Env(gymnasium.Env[Observation, npt.NDArray[Any]]):
         self._assets = None if assets is None else os.fspath(assets)
         self._views = views
         self._window: Optional[Window] = None
+        self._recorders: weakref.WeakSet[Any] = weakref.WeakSet()
         self._build()
         self.action_space = spaces.action_space(self._core.action_bounds)
         self.observation_space = spaces.observation_space(self._core)
@@ -127,15 +129,21 @@ class Env(gymnasium.Env[Observation, npt.NDArray[Any]]):
 
         Args:
             seed: Reseeds every random choice; without, they go on. Under ``compat: reference`` it seeds nothing.
-            options: ``{"model": changes}`` changes the model before the episode: see :meth:`change_model`.
+            options: What changes before the episode: ``age`` in months (:meth:`set_age`), then ``model``, numbers of the model
+                (:meth:`change_model`).
 
         Returns:
             The observation and the information.
+
+        Raises:
+            ValueError: An option that there is not.
         """
+        seed, wanted = changes.seed_of(seed), changes.options_of(options)
         super().reset(seed=seed)
-        wanted = changes.of_options(options)
-        if wanted is not None:
-            self.change_model(wanted)
+        if "age" in wanted:
+            self.set_age(wanted["age"])
+        if wanted.get("model") is not None:
+            self.change_model(wanted["model"])
         observation = self._core.reset(seed)
         self._show(0.0)
         return observation, self._core.info()
@@ -180,6 +188,10 @@ class Env(gymnasium.Env[Observation, npt.NDArray[Any]]):
         Raises:
             ValueError: A goal of another shape, or with numbers that are not finite.
         """
+        if "desired_goal" not in self.observation_space.spaces:
+            raise ValueError(
+                "set_goal: this environment has no goals; tasks with goals are reach, standup, selfbody and roll_over"
+            )
         return self._core.set_goal(desired_goal)
 
     def render(self) -> Optional[npt.NDArray[Any]]:  # type: ignore[override, unused-ignore]
@@ -198,7 +210,12 @@ class Env(gymnasium.Env[Observation, npt.NDArray[Any]]):
         return None
 
     def close(self) -> None:
-        """Frees the environment and closes the window; what comes after raises ``RuntimeError``."""
+        """Frees the environment and closes the window; what comes after raises ``RuntimeError``.
+
+        The episode that a :class:`babybench.data.Recorder` is recording ends.
+        """
+        for recorder in list(self._recorders):
+            recorder.end()
         if self._window is not None:
             self._window.close()
             self._window = None
@@ -282,28 +299,47 @@ class Env(gymnasium.Env[Observation, npt.NDArray[Any]]):
         """The actuators; with muscles, the action has all of them twice, flexors first."""
         return list(self._core.blueprint.model_names["actuator"])
 
-    @cached_property
-    def geom_names(self) -> list[str]:
-        """The parts that the ids of touches and :meth:`segmentation` mean: the body, and which of its geoms."""
-        blueprint = self._core.blueprint
-        bodies = [blueprint.model_names["body"][b] for b in blueprint.model_array("geom_bodyid")]
-        count = {body: bodies.count(body) for body in set(bodies)}
-        seen: dict[str, int] = dict.fromkeys(bodies, 0)
-        names = []
-        for body in bodies:
-            seen[body] += 1
-            names.append(body if count[body] == 1 else f"{body} {seen[body]}/{count[body]}")
-        return names
+    @property
+    def body_names(self) -> list[str]:
+        """The bodies by id, as the document names them: rows of ``xpos``, ``body_mass``, ..."""
+        return list(self._core.blueprint.model_names["body"])
 
-    def array(self, name: str) -> npt.NDArray[Any]:
+    @property
+    def joint_names(self) -> list[str]:
+        """The joints by id, as the document names them: rows of ``jnt_range``, ..."""
+        return list(self._core.blueprint.model_names["joint"])
+
+    @property
+    def site_names(self) -> list[str]:
+        """The sites by id, as the document names them: rows of ``site_xpos``; empty where it gives no name."""
+        return list(self._core.blueprint.model_names["site"])
+
+    @property
+    def geom_names(self) -> list[str]:
+        """The geoms by id, as the document names them: rows of ``geom_xpos``, ids of contacts, touches and :meth:`segmentation`.
+
+        A geom without a name has that of its part: see :attr:`part_names`.
+        """
+        return changes.names_of("geom", self._core.blueprint)
+
+    @cached_property
+    def part_names(self) -> list[str]:
+        """The parts that the ids of geoms mean: the body, and which of its geoms, ``left_hand 1/2``."""
+        return changes.part_names(self._core.blueprint)
+
+    def array(self, name: str, element: Optional[str] = None) -> npt.NDArray[Any]:
         """Returns a copy of an array of the scene or of its state by MuJoCo's name, such as ``jnt_range`` or ``xpos``.
 
+        Args:
+            name: The array.
+            element: The name of a body, joint, geom, site or actuator, for its row alone; of a joint with several degrees of
+                freedom all of its rows.
+
         Raises:
-            KeyError: The array does not exist.
+            KeyError: There is no such array or element.
         """
-        if name in self._core.STATE_ARRAYS:
-            return self._core.state_array(name)
-        return self._core.model_array(name)
+        array = changes.read(name, self._core.state_array, self._core.model_array)
+        return array if element is None else array[changes.rows_of(name, element, self._core.blueprint)]
 
     def change_model(self, model: changes.Changes) -> None:
         """Changes numbers of the model from the next step on, in this and in later episodes.
@@ -332,6 +368,29 @@ class Env(gymnasium.Env[Observation, npt.NDArray[Any]]):
         """
         core = self._core
         core.change_model(changes.arrays(model, core.model_array, core.blueprint))
+
+    def set_age(self, age: Optional[float]) -> None:
+        """Lets MIMo grow to an age in months, 0 to 24, or back to MIMo's own proportions (``None``); the next call is a reset.
+
+        Locks and the generator of random choices stay; changes of the model go. Names and ids are the same at every age. So is
+        ``observation_space``, but for the length of touch without ``touch_grows``.
+
+        Example:
+            >>> import babybench
+            >>> env = babybench.make("self_touch", touch_grows=True)
+            >>> for age in (3, 6):
+            ...     env.set_age(age)
+            ...     observation, info = env.reset(seed=0)
+            >>> env.config["age"]
+            6.0
+
+        Raises:
+            ValueError: An age that is not allowed; nothing has happened then.
+        """
+        self.config = self._core.set_age(None if age is None else float(age))
+        for layout in ("proprioception", "touch"):
+            self.__dict__.pop(layout, None)
+        self.observation_space = spaces.observation_space(self._core)
 
     # --- other moments ---
 
@@ -375,7 +434,9 @@ class Env(gymnasium.Env[Observation, npt.NDArray[Any]]):
         """Moves the scene to positions (nq; m, rad, quaternions) and velocities (nv; m/s, rad/s) and observes it."""
         return self._core.set_state(qpos, qvel)
 
-    def set_mocap(self, body: str, pos: Sequence[float], quat: Sequence[float] = (1.0, 0.0, 0.0, 0.0)) -> None:
+    def set_mocap(
+        self, body: Union[str, int], pos: Sequence[float], quat: Sequence[float] = (1.0, 0.0, 0.0, 0.0)
+    ) -> None:
         """Moves a body with ``mocap="true"`` to a position (world, m) and an orientation (w, x, y, z), from the next step on.
 
         It stays there until it is put elsewhere, and a reset puts it back where the document has it. Bodies of the key
@@ -390,7 +451,40 @@ class Env(gymnasium.Env[Observation, npt.NDArray[Any]]):
             KeyError: The body does not exist.
             ValueError: A number is not finite.
         """
-        self._core.set_mocap(body, list(pos), list(quat))
+        number = changes.element(body, "body", self._core.blueprint)
+        self._core.set_mocap(self.body_names[number], list(pos), list(quat))
+
+    def push(
+        self,
+        body: Union[str, int],
+        force: Sequence[float],
+        torque: Sequence[float] = (0.0, 0.0, 0.0),
+        point: Optional[Sequence[float]] = None,
+    ) -> None:
+        """Puts a force and a torque on a body, in the place of those of an earlier push; they act in every step until a reset.
+
+        Args:
+            body: The name or the id of a body.
+            force: N, in the world; zeros take it off.
+            torque: N m, in the world.
+            point: Where the force acts, m, in the world, with the body where it is now; by default at its centre of mass.
+
+        Example:
+            >>> import babybench
+            >>> env = babybench.make("self_touch", vision_active=False)
+            >>> observation, info = env.reset(seed=0)
+            >>> env.push("right_hand", force=[0, 0, 5])
+            >>> observation, *_ = env.step(env.action_space.sample() * 0)
+            >>> env.array("xfrc_applied")[env.body_names.index("right_hand"), :3]
+            array([0., 0., 5.])
+
+        Raises:
+            KeyError: There is no such body.
+            ValueError: A number is not finite.
+        """
+        number = changes.element(body, "body", self._core.blueprint)
+        at = None if point is None else [float(value) for value in point]
+        self._core.push(number, [float(value) for value in force], [float(value) for value in torque], at)
 
     def lock(self, target: Union[str, int], angle: float = 0.0) -> LockReport:
         """Locks a joint (``"robot:right_elbow"``), or all joints of a part (``"head"``), at an angle in rad.
@@ -420,7 +514,7 @@ class Env(gymnasium.Env[Observation, npt.NDArray[Any]]):
     def __getstate__(self) -> dict[str, Any]:
         """Returns the state that a copy needs to continue with the same bits."""
         state = self.__dict__.copy()
-        for made in ("_core", "_window", "proprioception", "touch"):
+        for made in ("_core", "_recorders", "_window", "proprioception", "touch"):
             state.pop(made, None)
         state["_snapshot"] = None if self._core.closed else self._core.snapshot()
         state["_changes"] = {} if self._core.closed else self._core.model_changes
@@ -430,13 +524,16 @@ class Env(gymnasium.Env[Observation, npt.NDArray[Any]]):
         """Builds the copy."""
         snapshot, changed = state.pop("_snapshot"), state.pop("_changes")
         self.__dict__.update(state)
-        self._window = None
+        self._window, self._recorders = None, weakref.WeakSet()
         self._build()
         self._core.change_model(changed)
         if snapshot is None:
             self._core.close()
         else:
             self._core.restore(snapshot)
+
+    def __str__(self) -> str:
+        return repr(self)
 
     def __repr__(self) -> str:
         return f"<babybench.Env {self.config['behavior']} in {self.config['scene']}>"

@@ -7,7 +7,7 @@ from typing import Union
 import numpy as np
 import numpy.typing as npt
 
-from babybench_core import _native
+from babybench_core import _native, changes
 from babybench_core.env import Env
 from babybench_core.vector import VectorEnv
 
@@ -46,6 +46,7 @@ class ActionNoise:
         else:
             count, space = 0, env.action_space
         self._many = count > 0
+        seed = changes.seed_of(seed) or 0
         low, high = space.low.tolist(), space.high.tolist()
         self._noises = [_native.ActionNoise(noise, low, high, env.dt, seed + k) for k in range(max(count, 1))]
 
@@ -56,6 +57,7 @@ class ActionNoise:
 
     def reset(self, seed: int = 0) -> None:
         """Restarts."""
+        seed = changes.seed_of(seed) or 0
         for k, noise in enumerate(self._noises):
             noise.reset(seed + k)
 

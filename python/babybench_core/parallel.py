@@ -14,6 +14,7 @@ Example:
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Mapping
 from typing import Any, ClassVar, Optional
 
@@ -22,6 +23,7 @@ import numpy as np
 import numpy.typing as npt
 import pettingzoo
 
+from babybench_core import changes
 from babybench_core.env import Env
 
 LEARNER = "learner"
@@ -91,8 +93,18 @@ class ParallelEnv(pettingzoo.ParallelEnv[str, Observation, npt.NDArray[np.float3
     def reset(
         self, seed: Optional[int] = None, options: Optional[Mapping[str, object]] = None
     ) -> tuple[dict[str, Observation], dict[str, Any]]:
-        """Starts an episode of both; see :meth:`babybench.Env.reset`."""
-        observation, info = self.env.reset(seed=seed, options=options)
+        """Starts an episode of both; see :meth:`babybench.Env.reset`.
+
+        Warns:
+            UserWarning: An option that there is not. PettingZoo's own test of environments gives one.
+        """
+        known = {name: value for name, value in (options or {}).items() if name in changes.OPTIONS}
+        if len(known) < len(options or {}):
+            strange = ", ".join(repr(name) for name in (options or {}) if name not in known)
+            warnings.warn(
+                f"options of a reset without effect: {strange}; there are {', '.join(changes.OPTIONS)}", stacklevel=2
+            )
+        observation, info = self.env.reset(seed=seed, options=known)
         self.agents = list(self.possible_agents)
         return self._observed(observation), {LEARNER: info, OTHER: {}}
 
@@ -102,11 +114,18 @@ class ParallelEnv(pettingzoo.ParallelEnv[str, Observation, npt.NDArray[np.float3
         """Applies an action of each infant; one who is not named keeps his last, which the learner must not.
 
         Raises:
-            KeyError: There is no action of the learner.
+            KeyError: There is no action of the learner, or one of an agent that there is not.
             ValueError: Actions of another shape, or with numbers that are not finite. Nothing has moved then; a valid action of
                 the other is kept for the next step.
-            RuntimeError: The simulation diverged, or there was no reset; reset it.
+            RuntimeError: The episode is over, the simulation diverged, or there was no reset; reset it.
         """
+        if not self.agents:
+            raise RuntimeError("the episode is over, and no agent is left: call reset() before the next step()")
+        for agent in actions:
+            if agent not in self.agents:
+                raise KeyError(f"there is no agent {agent!r}; agents are {', '.join(self.agents)}")
+        if LEARNER not in actions:
+            raise KeyError(f"there is no action of the agent {LEARNER!r}, which needs one in each step")
         action = actions[LEARNER]
         if OTHER in actions:
             self.env._core.act_other(0, actions[OTHER])

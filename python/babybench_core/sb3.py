@@ -20,6 +20,7 @@ import numpy as np
 import numpy.typing as npt
 from stable_baselines3.common.vec_env import VecEnv as BaseVecEnv
 
+from babybench_core import changes
 from babybench_core.vector import AutoresetMode, VectorEnv
 
 Indices = Union[None, int, Iterable[int]]
@@ -67,9 +68,20 @@ class VecEnv(BaseVecEnv):
         super().__init__(self.envs.num_envs, self.envs.single_observation_space, self.envs.single_action_space)
 
     def reset(self) -> dict[str, npt.NDArray[Any]]:
-        """Starts an episode in all environments, with the seeds of :meth:`seed` if there are any."""
+        """Starts an episode in all environments, with the seeds of :meth:`seed` and the options of :meth:`set_options`.
+
+        Raises:
+            ValueError: An option that there is not.
+        """
         seeds = list(self._seeds)
-        observations, _ = self.envs.reset(seed=seeds if any(seed is not None for seed in seeds) else None)
+        each = [changes.options_of(options) for options in self._options]
+        for env, options in enumerate(each):
+            if "age" in options:
+                self.envs.set_age(env, options["age"])
+        observations, _ = self.envs.reset(
+            seed=seeds if any(seed is not None for seed in seeds) else None,
+            options={"model": [options.get("model") for options in each]},
+        )
         self._reset_seeds()
         self._reset_options()
         return observations
@@ -123,7 +135,7 @@ class VecEnv(BaseVecEnv):
 
     def set_attr(self, attr_name: str, value: Any, indices: Indices = None) -> None:
         """Raises an error, because environments of a vector have no attributes of their own."""
-        raise AttributeError(f"cannot set {attr_name!r}: environments of a vector have no attributes of their own")
+        self.envs.set_attr(attr_name, value)
 
     def env_method(self, method_name: str, *args: Any, indices: Indices = None, **kwargs: Any) -> list[Any]:
         """Calls a method of the vector (``info``, ``snapshot``, ``lock``, ...) with the number of each environment."""

@@ -45,6 +45,11 @@ def read_config(config: ConfigLike = None, **keys: object) -> dict[str, Any]:
         found = {}
     elif isinstance(config, Mapping):
         found = config
+    elif not isinstance(config, (str, os.PathLike)):
+        raise TypeError(
+            f"a configuration is a mapping, the name of an example, or the path of a YAML file, not {config!r} (a list of "
+            "configurations makes a VectorEnv)"
+        )
     else:
         examples = config_examples()
         found = examples.get(os.fspath(config)) or _read_file(Path(config), list(examples))

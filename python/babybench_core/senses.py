@@ -70,7 +70,13 @@ class Proprioception:
         for found, entry, start, stop in self._entries:
             if (found, entry) == (component, name):
                 return slice(start, stop)
-        raise KeyError(f"proprioception has no {name!r} in {component!r}")
+        names: dict[str, list[str]] = {found: [] for found, *_ in self._entries}
+        for found, entry, *_ in self._entries:
+            names[found].append(entry)
+        if component not in names:
+            meant = hints.nearest(component, names)
+            raise KeyError(f"proprioception has no {component!r}; it has {', '.join(names)}{meant}")
+        raise KeyError(f"proprioception has no {name!r} in {component!r}{hints.nearest(name, names[component])}")
 
     def __getattr__(self, name: str) -> Any:
         """Suggests replacements of attributes that the starter kit's sense has.

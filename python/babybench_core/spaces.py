@@ -15,15 +15,11 @@ from babybench_core import _native
 def observation_space(core: _native.Env | _native.VectorEnv) -> Any:
     """Returns the space of the observations of one environment, a ``Dict`` (whose type differs from release to release).
 
-    What has no bounds is finite all the same, as a simulation that diverges is an error: bounds so far out that only infinite
-    numbers are excluded say so, and a sample can be drawn between them.
+    What has no bounds is unbounded, so that wrappers which scale or clip bounded observations leave it alone or refuse it.
     """
     boxes: dict[str, spaces.Space[Any]] = {}
     for key, shape, dtype, low, high in core.observation_spaces:
         kind = np.dtype(dtype).type
-        if np.isinf(low) and np.isinf(high):
-            high = float(np.finfo(kind).max) / 4
-            low = -high
         boxes[key] = spaces.Box(kind(low), kind(high), tuple(shape), kind)
     return spaces.Dict(boxes)
 

@@ -13,7 +13,7 @@ import numpy as np
 import numpy.typing as npt
 from gymnasium.vector.utils import batch_space
 
-from babybench_core import _native, changes, locks, scenes, spaces
+from babybench_core import _native, changes, hints, locks, scenes, spaces
 from babybench_core.goals import Infos, compute_reward
 from babybench_core.records import LockReport
 from babybench_core.senses import Proprioception, TouchLayout
@@ -46,7 +46,7 @@ _MODES = {
 _USUAL = AutoresetMode.NEXT_STEP if hasattr(gymnasium.vector, "AutoresetMode") else AutoresetMode.SAME_STEP
 
 
-_EACH = ("array", "change_model", "compute_reward", "info", "lock", "restore", "snapshot", "unlock")
+_EACH = ("array", "change_model", "compute_reward", "info", "lock", "restore", "set_age", "snapshot", "unlock")
 """Methods that take the number of an environment first."""
 
 _SINGLE = {
@@ -122,15 +122,13 @@ class VectorEnv(gymnasium.vector.VectorEnv):  # type: ignore[type-arg, unused-ig
             MemoryError: More environments than fit; the text says how many would.
         """
         configs = [config] if config is None or isinstance(config, (str, os.PathLike, Mapping)) else list(config)
-        if num_envs is None:
-            num_envs = len(configs)
+        num_envs = len(configs) if num_envs is None else changes.whole("num_envs", num_envs, 1)
+        threads = changes.whole("threads", threads, 0)
         if len(configs) not in (1, num_envs):
             raise ValueError(f"num_envs is {num_envs}, but there are {len(configs)} configurations")
-        if num_envs < 1:
-            raise ValueError(f"num_envs is {num_envs}, expected at least 1")
         if render_mode not in (None, "rgb_array"):
             raise ValueError(f"render_mode is {render_mode!r}, expected None or rgb_array")
-        mode = _USUAL if autoreset_mode is None else AutoresetMode(autoreset_mode)
+        mode = _USUAL if autoreset_mode is None else _mode(autoreset_mode)
         full = [scenes.read_config(one, **keys) for one in configs]
         if len({one["vision_lazy"] for one in full}) > 1:
             raise ValueError(
@@ -138,12 +136,16 @@ class VectorEnv(gymnasium.vector.VectorEnv):  # type: ignore[type-arg, unused-ig
             )
         self.config: dict[str, Any] = full[0]
         """The configuration of the first environment."""
-        self.configs: tuple[dict[str, Any], ...] = tuple(full) if len(full) == num_envs else (full[0],) * num_envs
-        """The configurations of all environments."""
         self._assets = None if assets is None else os.fspath(assets)
         self._limits = (threads, max_memory)
         self._copy = copy
+        # the arrays that threads write into, and the copies of the last observation and of the next
+        self._kept = 3 if copy else 1
         self.autoreset_mode = mode
+        shared = scenes.blueprint(full[0], self._assets)  # kept until the environments share it
+        _native.VectorEnv.check_memory(shared, num_envs, _MODES[mode], *self._limits, self._kept)
+        self.configs: tuple[dict[str, Any], ...] = tuple(full) if len(full) == num_envs else (full[0],) * num_envs
+        """The configurations of all environments."""
         self._build()
         self._camera = scenes.camera_of(self._blueprints[0], camera)
         self._everyone: Mask = np.ones(num_envs, np.bool_)
@@ -170,7 +172,7 @@ class VectorEnv(gymnasium.vector.VectorEnv):  # type: ignore[type-arg, unused-ig
                 made[id(config)] = scenes.blueprint(config, self._assets)
         self._blueprints = tuple(made[id(config)] for config in self.configs)
         lazy = self.config["vision_lazy"]
-        self._core = _native.VectorEnv(self._blueprints, _MODES[self.autoreset_mode], *self._limits, lazy)
+        self._core = _native.VectorEnv(self._blueprints, _MODES[self.autoreset_mode], *self._limits, lazy, self._kept)
 
     # --- Gymnasium ---
 
@@ -184,21 +186,33 @@ class VectorEnv(gymnasium.vector.VectorEnv):  # type: ignore[type-arg, unused-ig
 
         Args:
             seed: With one seed, environment i gets the seed plus i; a list has one, or none, for each.
-            options: ``reset_mask`` (N), bool: which environments to reset; the rows of the others stay. ``model``: changes of
-                the model of those that are reset, one mapping or a list with one, or ``None``, for each: :meth:`change_model`.
+            options: ``reset_mask`` (N), bool: which environments to reset; the rows of the others stay. ``age`` of those that
+                are reset, months, one or a list with one for each: :meth:`set_age`. ``model``: changes of their model, one
+                mapping or a list with one, or ``None``, for each: :meth:`change_model`.
 
         Returns:
             Observations and information.
+
+        Raises:
+            ValueError: An option that there is not.
         """
-        mask = None if options is None else options.get("reset_mask")
+        options = changes.options_of(options, (*changes.OPTIONS, "reset_mask"))
+        mask = options.get("reset_mask")
         if mask is not None:
             mask = np.asarray(mask)
             if mask.shape != (self.num_envs,) or mask.dtype != np.bool_:
                 expected = f"bool of shape ({self.num_envs},)"
                 raise ValueError(f"reset_mask is {mask.dtype} of shape {mask.shape}, expected {expected}")
-        for env, wanted in enumerate(changes.of_vector(changes.of_options(options), self.num_envs)):
-            if wanted is not None and (mask is None or mask[env]):
-                self.change_model(env, wanted)
+        if isinstance(seed, Sequence) and len(seed) != self.num_envs:
+            raise ValueError(f"seed has {len(seed)} entries, but there are {self.num_envs} environments")
+        begins = np.flatnonzero(self._everyone if mask is None else mask)
+        ages = changes.of_vector("age", options["age"], self.num_envs) if "age" in options else None
+        models = changes.of_vector("model", options.get("model"), self.num_envs)
+        for env in begins.tolist():
+            if ages is not None:
+                self.set_age(env, ages[env])
+            if models[env] is not None:
+                self.change_model(env, models[env])
         self._order = None
         return self._core.reset(seed, mask, self._copy), self._infos()
 
@@ -359,7 +373,8 @@ class VectorEnv(gymnasium.vector.VectorEnv):  # type: ignore[type-arg, unused-ig
         """
         raise AttributeError(
             f"cannot set {name!r}: environments of a vector have no attributes of their own; their configurations can differ "
-            "(a list of them), and lock, restore and reset take the number of an environment"
+            "(a list of them), and change_model, set_age, lock, restore and reset take the number of an environment: "
+            'with env_method("change_model", ...) of a vector of Stable-Baselines3'
         )
 
     # --- one environment ---
@@ -393,16 +408,28 @@ class VectorEnv(gymnasium.vector.VectorEnv):  # type: ignore[type-arg, unused-ig
         with locks.known(target, self._blueprints[env]):
             return self._core.unlock(env, target)
 
-    def array(self, env: int, name: str) -> npt.NDArray[Any]:
-        """Returns a copy of an array of the scene or of the state of one environment by MuJoCo's name, such as ``xpos``."""
-        if name in _native.Env.STATE_ARRAYS:
-            return self._core.state_array(env, name)
-        return self._core.model_array(env, name)
+    def array(self, env: int, name: str, element: Optional[str] = None) -> npt.NDArray[Any]:
+        """Returns a copy of an array of the scene or of the state of one environment: see :meth:`babybench.Env.array`."""
+        state, model = self._core.state_array, self._core.model_array
+        array = changes.read(name, functools.partial(state, env), functools.partial(model, env))
+        return array if element is None else array[changes.rows_of(name, element, self._blueprints[env])]
 
     def change_model(self, env: int, model: changes.Changes) -> None:
         """Changes numbers of the model of one environment from its next step on: see :meth:`babybench.Env.change_model`."""
         present = functools.partial(self._core.model_array, env)
         self._core.change_model(env, changes.arrays(model, present, self._blueprints[env]))
+
+    def set_age(self, env: int, age: Optional[float]) -> None:
+        """Lets the MIMo of one environment grow to an age in months; it has to be reset then: see :meth:`babybench.Env.set_age`.
+
+        Raises:
+            ValueError: An age that is not allowed, or at which the observation has another shape, as without ``touch_grows``;
+                nothing has happened then.
+        """
+        config = self._core.set_age(env, None if age is None else float(age))
+        self.configs = (*self.configs[:env], config, *self.configs[env + 1 :])
+        if env == 0:
+            self.config = config
 
     @property
     def threads(self) -> int:
@@ -471,6 +498,20 @@ class VectorEnv(gymnasium.vector.VectorEnv):  # type: ignore[type-arg, unused-ig
 
     def __repr__(self) -> str:
         return f"<babybench.VectorEnv of {self.num_envs}>"
+
+
+def _mode(mode: Union[AutoresetMode, str]) -> AutoresetMode:
+    """Returns a mode by its value.
+
+    Raises:
+        ValueError: It is none of them.
+    """
+    try:
+        return AutoresetMode(mode)
+    except ValueError:
+        known = ", ".join(repr(one.value) for one in AutoresetMode)
+        meant = hints.nearest(str(mode), [one.value for one in AutoresetMode])
+        raise ValueError(f"autoreset_mode is {mode!r}, expected one of {known}{meant}") from None
 
 
 def _sparse(key: str, rows: int, entries: Sequence[tuple[int, object]]) -> dict[str, Any]:

@@ -9,6 +9,7 @@ use pyo3::types::{PyBytes, PyDict};
 
 use crate::arrays::{Pair, read};
 use crate::blueprint::Blueprint;
+use crate::config::to_dict;
 use crate::errors::{IntoException, detached};
 use crate::guarded::{Guard, Guarded};
 use crate::info::{Space, info_dict, report_dict, spaces, target_of};
@@ -358,6 +359,23 @@ impl Env {
         state::write(self.guard()?.open()?.env.state_mut(), name, values)
     }
 
+    /// Puts a force and a torque on a body in the place of those that act on it.
+    #[pyo3(signature = (body, force, torque, point=None))]
+    fn push(&self, body: usize, force: [f64; 3], torque: [f64; 3], point: Option<[f64; 3]>) -> PyResult<()> {
+        let mut guard = self.guard()?;
+        let state = guard.open()?.env.state_mut();
+        let before = state.xfrc_applied.get(body).copied();
+        if let Some(applied) = state.xfrc_applied.get_mut(body) {
+            *applied = [0.0; 6];
+        }
+        let point = point.or_else(|| state.xipos.get(body).copied()).unwrap_or_default();
+        let applied = state.apply_force(body, force, torque, point);
+        if let (Err(_), Some(before)) = (&applied, before) {
+            state.xfrc_applied[body] = before;
+        }
+        applied.map_err(|e| babybench::EnvError::from(e).into_exception())
+    }
+
     fn apply_force(&self, body: usize, force: [f64; 3], point: [f64; 3]) -> PyResult<()> {
         let mut guard = self.guard()?;
         let applied = guard.open()?.env.state_mut().apply_force(body, force, [0.0; 3], point);
@@ -409,6 +427,26 @@ impl Env {
             },
         )?;
         Ok(())
+    }
+
+    #[pyo3(signature = (age))]
+    fn set_age<'py>(&self, py: Python<'py>, age: Option<f64>) -> PyResult<Bound<'py, PyDict>> {
+        let mut guard = self.guard()?;
+        let inner = guard.open()?;
+        detached(py, || inner.env.set_age(age))?;
+        // what was made of the body as it was
+        inner.painters = Painters::default();
+        inner.others = inner.env.others();
+        inner.blueprint = Py::new(
+            py,
+            Blueprint {
+                inner: inner.env.blueprint().clone(),
+            },
+        )?;
+        if inner.views.is_some() {
+            inner.views = Some(Views::new(py, &inner.env, inner.lazy)?);
+        }
+        to_dict(py, inner.env.config())
     }
 
     fn model_array<'py>(&self, py: Python<'py>, name: &str) -> PyResult<Bound<'py, PyAny>> {

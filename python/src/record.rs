@@ -7,7 +7,7 @@ use babybench::Limits;
 use babybench::eval::Measures;
 use babybench::formats::npz::NpzError;
 use babybench::runs::{
-    Motion, MotionError, Playing, Record, RecordError, RecordOptions, Recorder as Inside, play_motion,
+    Motion, MotionError, Owner, Playing, Record, RecordError, RecordOptions, Recorder as Inside, play_motion,
 };
 use pyo3::exceptions::{PyFileExistsError, PyValueError};
 use pyo3::prelude::*;
@@ -75,10 +75,22 @@ impl Recorder {
         Ok((Env::observed(py, inner)?, outcome.0, outcome.1, outcome.2))
     }
 
-    fn end(&self, py: Python<'_>, env: &Env) -> PyResult<()> {
+    /// Writes the episode; returns whether it had steps.
+    #[pyo3(signature = (env, unfinished=false))]
+    fn end(&self, py: Python<'_>, env: &Env, unfinished: bool) -> PyResult<bool> {
         let mut guard = env.guard()?;
         let env = &guard.open()?.env;
-        detached(py, || self.with(|recorder| recorder.end(env)))
+        detached(py, || {
+            self.with(|recorder| {
+                let steps = recorder.has_steps();
+                if unfinished {
+                    recorder.give_up(env)?;
+                } else {
+                    recorder.end(env)?;
+                }
+                Ok::<_, RecordError>(steps)
+            })
+        })
     }
 }
 
@@ -92,6 +104,22 @@ fn exception(error: RecordError) -> PyErr {
         RecordError::Exists { .. } => PyFileExistsError::new_err(error.to_string()),
         RecordError::Env(source) => source.into_exception(),
         other => PyValueError::new_err(other.to_string()),
+    }
+}
+
+/// A folder that belongs to this process as long as the object lives.
+#[pyclass(frozen, module = "babybench_core._native")]
+pub struct Folder {
+    _owner: Owner,
+}
+
+#[pymethods]
+impl Folder {
+    #[new]
+    fn new(folder: PathBuf) -> PyResult<Self> {
+        Ok(Self {
+            _owner: Owner::of(&folder)?,
+        })
     }
 }
 

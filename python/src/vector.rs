@@ -20,6 +20,18 @@ use crate::observation::dict_of_row;
 use crate::rows::Arrays;
 use crate::{model_change, task};
 
+/// Returns a mode by its name.
+fn mode_of(name: &str) -> PyResult<AutoresetMode> {
+    match name {
+        "next_step" => Ok(AutoresetMode::NextStep),
+        "same_step" => Ok(AutoresetMode::SameStep),
+        "disabled" => Ok(AutoresetMode::Disabled),
+        _ => Err(PyValueError::new_err(format!(
+            "autoreset is {name:?}, expected next_step, same_step or disabled"
+        ))),
+    }
+}
+
 /// The contents of a Python vector.
 struct Inner {
     envs: babybench::VectorEnv,
@@ -69,7 +81,7 @@ impl VectorEnv {
 #[pymethods]
 impl VectorEnv {
     #[new]
-    #[pyo3(signature = (blueprints, autoreset="next_step", threads=0, max_memory=None, lazy=false))]
+    #[pyo3(signature = (blueprints, autoreset="next_step", threads=0, max_memory=None, lazy=false, copies=1))]
     fn new(
         py: Python<'_>,
         blueprints: Vec<Py<Blueprint>>,
@@ -77,20 +89,13 @@ impl VectorEnv {
         threads: usize,
         max_memory: Option<u64>,
         lazy: bool,
+        copies: usize,
     ) -> PyResult<Self> {
-        let autoreset = match autoreset {
-            "next_step" => AutoresetMode::NextStep,
-            "same_step" => AutoresetMode::SameStep,
-            "disabled" => AutoresetMode::Disabled,
-            _ => {
-                let text = format!("autoreset is {autoreset:?}, expected next_step, same_step or disabled");
-                return Err(PyValueError::new_err(text));
-            }
-        };
         let options = VectorOptions {
-            autoreset,
+            autoreset: mode_of(autoreset)?,
             threads,
             max_memory,
+            kept_copies: copies,
         };
         let blueprints: Vec<_> = blueprints.iter().map(|b| b.get().inner.clone()).collect();
         let envs = detached(py, || babybench::VectorEnv::from_blueprints(&blueprints, options))?;
@@ -114,6 +119,27 @@ impl VectorEnv {
             inner: Guarded::new(inner, "vector", "one thread at a time"),
             process: std::process::id(),
         })
+    }
+
+    /// Refuses more environments than fit, before there are lists of as many.
+    #[staticmethod]
+    fn check_memory(
+        py: Python<'_>,
+        blueprint: &Blueprint,
+        count: usize,
+        autoreset: &str,
+        threads: usize,
+        max_memory: Option<u64>,
+        copies: usize,
+    ) -> PyResult<()> {
+        let options = VectorOptions {
+            autoreset: mode_of(autoreset)?,
+            threads,
+            max_memory,
+            kept_copies: copies,
+        };
+        let blueprint = &blueprint.inner;
+        detached(py, || babybench::VectorEnv::check_memory(blueprint, count, options))
     }
 
     // --- life ---
@@ -395,6 +421,14 @@ impl VectorEnv {
         let mut guard = self.guard()?;
         let env = guard.open()?.envs.env(env).map_err(IntoException::into_exception)?;
         model_change::array(py, env, name)
+    }
+
+    #[pyo3(signature = (env, age))]
+    fn set_age<'py>(&self, py: Python<'py>, env: usize, age: Option<f64>) -> PyResult<Bound<'py, PyDict>> {
+        let mut guard = self.guard()?;
+        let envs = &mut guard.open()?.envs;
+        detached(py, || envs.set_age(env, age))?;
+        to_dict(py, envs.env(env).map_err(IntoException::into_exception)?.config())
     }
 
     fn change_model(&self, env: usize, changes: &Bound<'_, PyDict>) -> PyResult<()> {

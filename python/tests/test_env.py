@@ -174,7 +174,7 @@ def test_information_names_what_was_touched():
     touched = info["right_hand_touches"] + info["left_hand_touches"]
     names = info["right_hand_parts"] + info["left_hand_parts"]
     assert "head" in names
-    assert names == [env.geom_names[geom] for geom in touched]
+    assert names == [env.part_names[geom] for geom in touched]
 
 
 def test_pictures_depth_and_segmentation_show_one_scene():

@@ -70,6 +70,7 @@ def test_the_other_moves_by_his_own_actions(two):
     for a, b in zip(moved, again):
         np.testing.assert_array_equal(a[0]["other"], b[0]["other"])
         np.testing.assert_array_equal(a[0]["learner"]["touch"], b[0]["learner"]["touch"])
+    two.reset(seed=3)
     with pytest.raises(ValueError, match="action"):
         two.step({"learner": np.zeros(two.action_space("learner").shape), "other": np.zeros(3)})
     with pytest.raises(KeyError):
@@ -79,3 +80,20 @@ def test_the_other_moves_by_his_own_actions(two):
 def test_a_room_with_one_infant_is_refused():
     with pytest.raises(ValueError, match="no second infant"):
         babybench.pettingzoo.ParallelEnv("self_touch", vision_active=False)
+
+
+def test_the_end_is_the_end(two):
+    env = two
+    env.reset(seed=0)
+    actions = {agent: env.action_space(agent).sample() for agent in env.agents}
+    with pytest.raises(KeyError, match="no agent 'third'; agents are learner, other"):
+        env.step({**actions, "third": actions["other"]})
+    with pytest.raises(KeyError, match="no action of the agent 'learner'"):
+        env.step({"other": actions["other"]})
+    while env.agents:
+        env.step(actions)
+    for late in (actions, {}):
+        with pytest.raises(RuntimeError, match="the episode is over"):
+            env.step(late)
+    env.reset(seed=0)
+    assert env.step(actions)[0].keys() == {"learner", "other"}

@@ -221,3 +221,20 @@ def test_a_sparse_policy_sees_is_saved_and_goes_on(tmp_path):
         model.predict(observation, deterministic=True)[0], again.predict(observation, deterministic=True)[0]
     )
     assert again.learn(16).num_timesteps == 16
+
+
+def test_options_reach_the_reset_and_hold_for_one():
+    envs = babybench.sb3.VecEnv(SMALL, 2)
+    envs.set_options({"model": {"opt.gravity": [0, 0, -1.62]}})
+    envs.reset()
+    assert [envs.envs.array(env, "opt.gravity")[2] for env in range(2)] == [-1.62, -1.62]
+    head = envs.envs.array(0, "body_mass", "head")
+    envs.set_options([{"model": {"body_mass": {"head": 5.0}}}, {}])
+    envs.reset()
+    assert [float(envs.envs.array(env, "body_mass", "head")) for env in range(2)] == [5.0, float(head)]
+    envs.set_options({"age": 3.0})
+    envs.reset()
+    assert {config["age"] for config in envs.envs.configs} == {3.0}
+    envs.set_options({"nonsense": 1})
+    with pytest.raises(ValueError, match="no such option"):
+        envs.reset()

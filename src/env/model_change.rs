@@ -241,6 +241,48 @@ impl Env {
             .collect()
     }
 
+    /// Returns the numbers that differ from the model of the scene: names as in [`CHANGEABLE`], and whole arrays, rows one after the other.
+    pub fn changed_numbers(&self) -> Vec<(&'static str, Vec<f64>)> {
+        let changed = self.model_changes();
+        let now = shown(self.model(), self.blueprint.params());
+        let both = CHANGEABLE.iter().zip(rows(&now));
+        both.filter(|(name, _)| changed.contains(name))
+            .map(|(name, numbers)| (*name, numbers.to_vec()))
+            .collect()
+    }
+
+    /// Gives the model the numbers of the scene, but for those of `changes`, as [`Env::changed_numbers`] returns them. Names that
+    /// the model does not have, and arrays of another length, are refused.
+    ///
+    /// # Errors
+    /// As [`Env::change_model`]. Nothing is changed then.
+    pub fn set_changed_numbers(&mut self, changes: &[(String, Vec<f64>)]) -> Result<(), EnvError> {
+        let changed = self.model_changes();
+        let (model, params) = self.blueprint.origin();
+        let first = shown(model, params);
+        let known = CHANGEABLE.iter().zip(rows(&first));
+        let fits = |(name, numbers): &(String, Vec<f64>)| {
+            let found = known.clone().find(|(known, _)| **known == name.as_str());
+            found.is_some_and(|(_, first)| first.len() == numbers.len())
+        };
+        if !changes.iter().all(fits) {
+            return Err(ModelChangeError::Fixed.into());
+        }
+        if changes.is_empty() && changed.is_empty() {
+            return Ok(());
+        }
+        self.change_model(|arrays| {
+            let all = CHANGEABLE.iter().zip(rows_mut(arrays).into_iter().zip(rows(&first)));
+            for (name, (to, first)) in all {
+                if let Some((_, numbers)) = changes.iter().find(|(changed, _)| changed == name) {
+                    to.copy_from_slice(numbers);
+                } else if changed.contains(name) {
+                    to.copy_from_slice(first);
+                }
+            }
+        })
+    }
+
     /// Changes numbers of the model from the next step on, in this and in later episodes: gravity and timestep, mass, inertia, size,
     /// friction, damping, stiffness, armature, gears, softness. It has the effect of writing into MuJoCo's `mjModel`: constants derived
     /// from these numbers (`body_invweight0`, `dof_invweight0`, `geom_rbound`) keep their values unless the program writes them, too.

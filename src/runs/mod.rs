@@ -56,6 +56,8 @@ mod training;
 
 pub use logs::{EvaluationLog, TrainingTotals};
 pub use logs::{LogError, TrainingLog, read_training};
+pub use logs::{EvaluationLog, TrainingTotals};
+pub use crate::files::Owner;
 pub use many::RunVector;
 #[cfg(feature = "npz")]
 pub use motion::{Motion, MotionError, Played, Playing, play_motion};

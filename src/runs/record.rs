@@ -176,7 +176,9 @@ impl Recorder {
     /// # Errors
     /// A folder that has a record or cannot be created; eyes that are off.
     pub fn create(dir: impl Into<PathBuf>, env: &Env, options: RecordOptions) -> Result<Self, RecordError> {
+        // a relative path is that of now, wherever the program goes later
         let dir = dir.into();
+        let dir = std::path::absolute(&dir).unwrap_or(dir);
         if dir.join(MANIFEST).exists() {
             return Err(RecordError::Exists { path: dir });
         }
@@ -215,6 +217,11 @@ impl Recorder {
     /// Returns the folder.
     pub fn dir(&self) -> &Path {
         &self.shared.dir
+    }
+
+    /// Returns whether steps of an episode were recorded that [`Recorder::end`] has not written.
+    pub fn has_steps(&self) -> bool {
+        self.rows.as_ref().is_some_and(|(_, rows)| rows.len() > 0)
     }
 
     /// Starts recording an episode from the current moment on, under a number that no other episode of the folder has. An episode that
@@ -273,6 +280,19 @@ impl Recorder {
     /// # Errors
     /// Errors of the file system.
     pub fn end(&mut self, env: &Env) -> Result<(), RecordError> {
+        self.write(env, false)
+    }
+
+    /// Writes the steps so far, as [`Recorder::end`] does, of an episode that goes on or was given up: the description marks it as
+    /// [`unfinished`](EpisodeDescription::unfinished).
+    ///
+    /// # Errors
+    /// Errors of the file system.
+    pub fn give_up(&mut self, env: &Env) -> Result<(), RecordError> {
+        self.write(env, true)
+    }
+
+    fn write(&mut self, env: &Env, unfinished: bool) -> Result<(), RecordError> {
         let Some((number, mut rows)) = self.rows.take() else {
             return Ok(());
         };
@@ -293,10 +313,17 @@ impl Recorder {
             crc32: crc32fast::hash(&bytes),
             last_checksum: rows.last_checksum(),
             info: serde_json::to_value(Detailed::from(env.info())).unwrap_or_default(),
+            age: None,
+            unfinished,
         };
         rows.clear();
         self.spare = Some(rows);
         let mut manifest = lock(&self.shared.manifest);
+        let age = env.config().age;
+        let description = EpisodeDescription {
+            age: (age != manifest.configuration.age).then_some(age),
+            ..description
+        };
         manifest.add(description, arrays);
         save(dir, &manifest)
     }

@@ -1,8 +1,9 @@
 //! Estimates of the memory of environments, before they are made.
 
+use crate::config::VisionOutput;
 use crate::env::Env;
 use crate::vector::rows::Layout;
-use crate::vector::{AutoresetMode, VectorError};
+use crate::vector::{AutoresetMode, VectorError, VectorOptions, options};
 
 /// The limit on systems that do not report their memory.
 const DEFAULT_LIMIT: u64 = if cfg!(target_pointer_width = "32") {
@@ -11,15 +12,69 @@ const DEFAULT_LIMIT: u64 = if cfg!(target_pointer_width = "32") {
     64 << 30
 };
 
-/// Estimates the memory of a further environment, bytes, from one that is built.
-///
-/// Sizes are linear in the number of each kind of element. The factors were measured; a test compares the sum with the allocator.
-pub(super) fn estimate(env: &Env, layout: &Layout, mode: AutoresetMode) -> u64 {
+/// Memory of environments, bytes.
+#[derive(Clone, Copy)]
+pub(super) struct Estimate {
+    /// Of a further environment.
+    pub each: u64,
+    /// Of what threads draw with, however many environments there are.
+    pub drawing: u64,
+}
+
+impl Estimate {
+    /// Estimates from an environment that is built.
+    ///
+    /// Sizes are linear in the number of each kind of element. The factors were measured; a test compares the sum with the
+    /// allocator.
+    pub fn of(env: &Env, layout: &Layout, options: &VectorOptions, envs: usize) -> Self {
+        let threads = options::threads(options.threads, envs).0;
+        Self {
+            each: each(env, layout, options),
+            drawing: (threads * drawing(env)) as u64,
+        }
+    }
+
+    /// Refuses more environments than fit.
+    pub fn check(self, envs: usize, max_memory: Option<u64>) -> Result<(), VectorError> {
+        let Self { each, drawing } = self;
+        let limit = max_memory.or_else(available).unwrap_or(DEFAULT_LIMIT);
+        let bytes = each.saturating_mul(envs as u64).saturating_add(drawing);
+        if bytes <= limit {
+            return Ok(());
+        }
+        let fit = usize::try_from(limit.saturating_sub(drawing) / each.max(1)).unwrap_or(usize::MAX);
+        Err(VectorError::Memory {
+            envs,
+            each,
+            bytes,
+            limit,
+            fit,
+        })
+    }
+}
+
+/// Returns the memory with which a thread draws what an eye sees: the visibility buffers of the larger image, of 32 bytes a pixel,
+/// for colours and for depth and segmentation.
+fn drawing(env: &Env) -> usize {
+    let Some(vision) = env.senses().vision() else { return 0 };
+    let pixels = vision.views().map(|view| view.width * view.height);
+    let outputs = env.config().vision_outputs;
+    let any = |of: [VisionOutput; 2]| usize::from(of.iter().any(|&one| outputs.contains(one)));
+    let buffers = any([VisionOutput::Rgb, VisionOutput::Gray]) + any([VisionOutput::Depth, VisionOutput::Segmentation]);
+    32 * buffers * pixels.into_iter().max().unwrap_or(0)
+}
+
+/// Returns the memory of a further environment.
+fn each(env: &Env, layout: &Layout, options: &VectorOptions) -> u64 {
     let model = env.model();
-    // the array of the vector and the vector of the sense; twice with the ends of episodes
-    let copies = if mode == AutoresetMode::SameStep { 4 } else { 2 };
-    let rows = copies * layout.row_bytes();
-    // what decides how the run continues, and the arguments of the last step; engines and buffers of pictures are shared
+    // the array of the vector and the vector of the sense; with the ends of episodes, another of each
+    let copies = if options.autoreset == AutoresetMode::SameStep {
+        4
+    } else {
+        2
+    };
+    let rows = (copies + options.kept_copies) * layout.row_bytes();
+    // what decides how the run goes on, and where the last step began; engines and the memory of pictures are shared
     let state = 4_000 + 64 * model.nv + 50 * model.nbody();
     let computed = if env.shares() {
         0
@@ -32,23 +87,6 @@ pub(super) fn estimate(env: &Env, layout: &Layout, mode: AutoresetMode) -> u64 {
         .touch()
         .map_or(0, |touch| 24_000 + 7 * touch.layout().len());
     (rows + state + computed + skin + env.transform_memory()) as u64
-}
-
-/// Returns an error if the environments do not fit.
-pub(super) fn check(envs: usize, each: u64, max_memory: Option<u64>) -> Result<(), VectorError> {
-    let limit = max_memory.or_else(available).unwrap_or(DEFAULT_LIMIT);
-    let bytes = each.saturating_mul(envs as u64);
-    if bytes <= limit {
-        return Ok(());
-    }
-    let fit = usize::try_from(limit / each.max(1)).unwrap_or(usize::MAX);
-    Err(VectorError::Memory {
-        envs,
-        each,
-        bytes,
-        limit,
-        fit,
-    })
 }
 
 /// Returns the memory available from the system and the container, bytes, if they report it.

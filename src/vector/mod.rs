@@ -44,6 +44,7 @@ use crate::env::{Blueprint, Env, EnvError};
 use crate::spaces::{BoxSpace, ObservationSpace};
 use crate::threads::Pool;
 use infos::InfoRows;
+use memory::Estimate;
 use rows::{Layout, Rows};
 use slot::Slot;
 
@@ -129,6 +130,19 @@ impl VectorEnv {
         Self::build(blueprints.len(), |env| &blueprints[env], options)
     }
 
+    /// Refuses as many environments of a blueprint as would not fit into memory, without making them. Whatever makes lists of that length
+    /// asks this first; [`VectorEnv::new`] and [`VectorEnv::from_blueprints`] do it themselves.
+    ///
+    /// # Errors
+    /// None or more than memory holds; errors of [`Blueprint::env`].
+    pub fn check_memory(blueprint: &Blueprint, n: usize, options: VectorOptions) -> Result<(), VectorError> {
+        if n == 0 {
+            return Err(VectorError::NoEnvironments);
+        }
+        let first = make(blueprint).map_err(of(0))?;
+        Estimate::of(&first, &Layout::new([&first]), &options, n).check(n, options.max_memory)
+    }
+
     fn build<'b>(
         n: usize,
         blueprint: impl Fn(usize) -> &'b Blueprint,
@@ -140,8 +154,7 @@ impl VectorEnv {
         let make = |env: usize| make(blueprint(env)).map_err(of(env));
         let first = make(0)?;
         let mode = options.autoreset;
-        let each = memory::estimate(&first, &Layout::new([&first]), mode);
-        memory::check(n, each, options.max_memory)?;
+        Estimate::of(&first, &Layout::new([&first]), &options, n).check(n, options.max_memory)?;
         let envs = alike(first, n, make)?;
         let deferred = envs.iter().all(on_gpu);
         let lazy = envs.iter().any(|env| env.senses().vision_is_lazy());

@@ -28,6 +28,9 @@ pub struct VectorOptions {
     /// Memory that the environments may take, bytes. By default the memory that the system reports as available (Linux), and otherwise 64
     /// GiB (2 GiB with 32-bit addresses).
     pub max_memory: Option<u64>,
+    /// Number of copies of all observations that the caller keeps beside those of the vector; they count as memory that the
+    /// environments take.
+    pub kept_copies: usize,
 }
 
 /// The number of threads per core beyond which threads only take turns.

@@ -273,3 +273,50 @@ fn measures_of_a_record_add_up() {
     let json: serde_json::Value = serde_json::from_str(&mean.to_json()).expect("JSON");
     assert_eq!(json["steps"], 600);
 }
+
+#[test]
+fn a_record_of_changed_models_and_ages_is_repeated() {
+    let folder = Folder::new("record_changes");
+    let blueprint = touching(Behavior::SelfTouch, Scene::Crib);
+    let mut env = blueprint.env().expect("an environment");
+    let mut recorder = Recorder::create(folder.path(), &env, RecordOptions::default()).expect("a folder");
+    let still = vec![0.0; env.action_space().len()];
+    for episode in 0..4 {
+        match episode {
+            1 => env.change_model(|model| model.opt.gravity = [0.0, 0.0, -1.62]),
+            2 => env.set_age(Some(3.0)),
+            3 => env.set_age(None),
+            _ => Ok(()),
+        }
+        .expect("it can be changed");
+        env.reset(Some(episode)).expect("no divergence");
+        recorder.begin(&env, episode);
+        for _ in 0..5 {
+            recorder.step(&mut env, &still).expect("no divergence");
+        }
+        assert!(recorder.has_steps());
+        if episode == 3 {
+            recorder.give_up(&env).expect("the episode can be written");
+        } else {
+            recorder.end(&env).expect("the episode can be written");
+        }
+        assert!(!recorder.has_steps());
+    }
+    let record = Record::open(folder.path()).expect("a record");
+    let episodes = &record.manifest().episodes;
+    assert_eq!(
+        episodes.iter().map(|e| (e.age, e.unfinished)).collect::<Vec<_>>(),
+        [(None, false), (None, false), (Some(Some(3.0)), false), (None, true)]
+    );
+    let changed = record.npz(1).expect("an archive").get_f64("model.opt.gravity");
+    assert_eq!(changed.expect("it was changed").data, [0.0, 0.0, -1.62]);
+    for episode in [3, 2, 1, 0, 2] {
+        let replayed = record.replay(episode, &mut env).expect("a replay");
+        assert_eq!((replayed.steps, replayed.first_difference), (5, None), "{episode}");
+    }
+    assert!(env.set_changed_numbers(&[("nothing".to_string(), vec![1.0])]).is_err());
+    assert!(
+        env.set_changed_numbers(&[("opt.gravity".to_string(), vec![1.0])])
+            .is_err()
+    );
+}

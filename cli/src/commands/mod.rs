@@ -27,7 +27,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use babybench::assets::{AssetSource, DirAssets};
-use babybench::config::{Compat, Config, RendererKind};
+use babybench::config::{Compat, Config, ConfigError, Example, RendererKind};
 use babybench::env::BlueprintOptions;
 use babybench::formats::npz::Npz;
 use babybench::mimo::embedded;
@@ -86,7 +86,7 @@ pub enum Command {
 /// The ingredients of an environment.
 #[derive(Args)]
 struct Source {
-    /// Configuration file (YAML); see configs/
+    /// Configuration file (YAML), see configs/; or the name of an example: self_touch, hand_regard, test_installation, reach, ...
     #[arg(long, value_name = "FILE")]
     config: PathBuf,
     /// Use the MJCF and textures of this directory (babybench/*.xml, tex/*.png) instead of the embedded ones
@@ -95,6 +95,15 @@ struct Source {
     /// Follow the API page (api) or the Python code (reference) where they disagree; overrides the configuration
     #[arg(long, value_name = "WHICH", value_parser = parse_compat)]
     compat: Option<Compat>,
+}
+
+/// Reads a configuration whose missing keys have the values of `base`: a file, or the example of that name if there is no such file.
+fn read_over(base: Config, path: &Path) -> Result<Config, ConfigError> {
+    let mut examples = Example::ALL.into_iter().chain(Example::TASKS);
+    match examples.find(|example| path == Path::new(example.name)) {
+        Some(example) if !path.exists() => base.overlay_yaml(example.yaml, example.name),
+        _ => base.overlay_file(path),
+    }
 }
 
 fn parse_compat(text: &str) -> Result<Compat, String> {
@@ -120,7 +129,7 @@ impl Source {
             compat,
             ..Config::default()
         };
-        let mut config = base.overlay_file(&self.config)?;
+        let mut config = read_over(base, &self.config)?;
         if let Some(compat) = self.compat {
             config.compat = compat;
         }

@@ -15,7 +15,7 @@ use crate::print::say;
 /// Arguments of `replay`. Recordings that are single files come from the reference, so its behavior is their default.
 #[derive(Args)]
 pub struct ReplayArgs {
-    /// Configuration file (YAML); a record has its own
+    /// Configuration file (YAML), or the name of an example; a record has its own
     #[arg(long, value_name = "FILE")]
     config: Option<PathBuf>,
     /// Use the MJCF and textures of this directory (babybench/*.xml, tex/*.png) instead of the embedded ones

@@ -17,7 +17,7 @@ use crate::view::{Next, View};
 /// Arguments of `view`.
 #[derive(Args)]
 pub struct ViewArgs {
-    /// Configuration file (YAML); see configs/. Without one, self-touch in the crib
+    /// Configuration file (YAML), see configs/, or the name of an example. Without one, self-touch in the crib
     #[arg(long, value_name = "FILE")]
     config: Option<PathBuf>,
     /// Use the MJCF and textures of this directory (babybench/*.xml, tex/*.png) instead of the embedded ones

@@ -80,7 +80,7 @@ def _shapes(recording: Any, env: Any, root: str) -> None:
     kind, size = env.array("geom_type"), env.array("geom_size").reshape(-1, 3)
     body, group = env.array("geom_bodyid"), env.array("geom_group")
     pos, quat = env.array("geom_pos").reshape(-1, 3), env.array("geom_quat").reshape(-1, 4)
-    names, parts, missing = env._core.blueprint.model_names["body"], env.geom_names, []
+    names, parts, missing = env._core.blueprint.model_names["body"], env.part_names, []
     own = _descendants(env)
     for geom in range(len(kind)):
         half, place = (

@@ -30,6 +30,20 @@ pub enum RoomError {
         /// Its name.
         name: String,
     },
+    /// Text between the elements that are added to a scene.
+    #[error(
+        "scene_extra:{line}:{column}: {} stands where no element is, and adds nothing: scene_extra is MJCF itself, as in <geom size=\".1\"/>, \
+         not the name of a file; a document of one's own is the key `scene`",
+        quoted(.text)
+    )]
+    Stray {
+        /// Line of the text, from 1.
+        line: usize,
+        /// Column, from 1.
+        column: usize,
+        /// The text.
+        text: String,
+    },
     /// The document lacks a part of MIMo.
     #[error("{}: <include file=\"{file}\"/> is missing {place}: it has {what}", quoted(.path))]
     Lacks {

@@ -3,6 +3,7 @@
 use quick_xml::events::Event;
 use quick_xml::reader::Reader;
 
+use super::RoomError;
 use crate::mjcf_loader::Place;
 
 /// Name of the text in errors.
@@ -84,6 +85,37 @@ impl Extra {
     }
 }
 
+/// Refuses text outside of elements, which would add nothing.
+pub(super) fn check(text: &str) -> Result<(), RoomError> {
+    let mut reader = Reader::from_str(text);
+    let mut depth = 0_usize;
+    loop {
+        let at = reader.buffer_position() as usize;
+        match reader.read_event() {
+            Ok(Event::Start(_)) => depth += 1,
+            Ok(Event::End(_)) => depth = depth.saturating_sub(1),
+            Ok(Event::Text(found)) if depth == 0 => {
+                let found: &str = &found;
+                let stray = found.trim();
+                if stray.is_empty() {
+                    continue;
+                }
+                let before = text.get(..at).unwrap_or_default();
+                let lead = &found[..found.len() - found.trim_start().len()];
+                let before = format!("{before}{lead}");
+                return Err(RoomError::Stray {
+                    line: before.matches('\n').count() + 1,
+                    column: before.rsplit('\n').next().unwrap_or_default().chars().count() + 1,
+                    text: stray.to_string(),
+                });
+            }
+            // what is no XML is left to the loader
+            Ok(Event::Eof) | Err(_) => return Ok(()),
+            Ok(_) => {}
+        }
+    }
+}
+
 /// Lists the top elements by position and name, as far as the text is XML.
 fn top_elements(text: &str) -> Vec<(usize, String)> {
     let mut reader = Reader::from_str(text);
@@ -138,6 +170,26 @@ mod tests {
         }
         assert_eq!(Extra::new("<mujocoinclude><asset/></mujocoinclude>").inserted.len(), 0);
         assert_eq!(Extra::new("").document, "<mujocoinclude></mujocoinclude>");
+        for text in [
+            "",
+            " \n",
+            "<!-- none -->",
+            "<geom/> <site/>",
+            "<body> text </body>",
+            "<body",
+        ] {
+            assert_eq!(check(text).map_err(|e| e.to_string()), Ok(()), "{text}");
+        }
+        for (text, line, column, stray) in [
+            ("ball.xml", 1, 1, "ball.xml"),
+            ("<geom/>\n  ball.xml <geom/>", 2, 3, "ball.xml"),
+        ] {
+            let wanted = (line, column, stray.to_string());
+            assert!(
+                matches!(check(text), Err(RoomError::Stray { line, column, text }) if (line, column, &text) == (wanted.0, wanted.1, &wanted.2)),
+                "{text}"
+            );
+        }
         // errors are left to the loader
         for broken in ["<body", "</body>", "&<geom/>", "\u{e4}<geom/>\u{0}", "<geom></body>"] {
             Extra::new(broken);

@@ -105,6 +105,7 @@ impl<A: AssetSource> Room<A> {
     /// Finds the document of a configuration; `None` if its scene is one of the library.
     pub fn open(config: &Config, given: A) -> Result<Option<Self>, RoomError> {
         if !config.scene_extra.is_empty() {
+            extra::check(&config.scene_extra)?;
             return Ok(Some(Self {
                 given,
                 own: Own::Added(Extra::new(&config.scene_extra)),

@@ -4,6 +4,7 @@ use std::path::Path;
 
 use super::RecordError;
 use super::manifest::{GeomDescription, JointDescription};
+use super::rows::MODEL;
 use crate::config::Part;
 use crate::env::{Env, PartNames};
 use crate::formats::npz::NpzWriter;
@@ -81,6 +82,12 @@ pub(super) fn write_skin(env: &Env, dir: &Path) -> Result<(), RecordError> {
 
 /// Returns dimensions and meaning of an array of an archive.
 pub(super) fn meaning(name: &str) -> (&'static str, &'static str) {
+    if name.starts_with(MODEL) {
+        return (
+            "(N)",
+            "Numbers of the model that a program had changed before the episode: the whole array, rows one after the other.",
+        );
+    }
     let known = MEANINGS.iter().find(|(known, ..)| *known == name);
     known.map_or(
         (

@@ -107,6 +107,25 @@ pub struct EpisodeDescription {
     pub last_checksum: i64,
     /// The information of the last step, with details.
     pub info: serde_json::Value,
+    /// MIMo's age in months, if it was not that of the configuration; null for the original proportions.
+    #[serde(default, skip_serializing_if = "Option::is_none", with = "other_age")]
+    pub age: Option<Option<f64>>,
+    /// Whether the recorder was given up before the episode was ended: the end of what it recorded need not be the end of the episode.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub unfinished: bool,
+}
+
+/// An age that may be the original proportions: null stands for those, and nothing for the age of the configuration.
+mod other_age {
+    use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
+    pub(super) fn serialize<S: Serializer>(age: &Option<Option<f64>>, serializer: S) -> Result<S::Ok, S::Error> {
+        age.flatten().serialize(serializer)
+    }
+
+    pub(super) fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<Option<f64>>, D::Error> {
+        Option::deserialize(deserializer).map(Some)
+    }
 }
 
 impl Manifest {

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use super::manifest::{FORMAT, VERSION};
-use super::rows::checksum;
+use super::rows::{MODEL, checksum};
 use super::{MANIFEST, Manifest, RecordError};
 use crate::env::{Env, Snapshot};
 use crate::files;
@@ -128,6 +128,18 @@ impl Record {
             source,
         };
         let start = Snapshot::from_bytes(npz.get_u8("snapshot")?.data).map_err(snapshot)?;
+        let described = self.manifest.episodes.iter().find(|e| e.episode == episode);
+        let age = described.and_then(|e| e.age).unwrap_or(self.manifest.configuration.age);
+        if env.config().age != age {
+            env.set_age(age)?;
+        }
+        let mut changes = Vec::new();
+        for array in npz.arrays() {
+            if let Some(changed) = array.name.strip_prefix(MODEL) {
+                changes.push((changed.to_string(), npz.get_f64(&array.name)?.data));
+            }
+        }
+        env.set_changed_numbers(&changes)?;
         env.restore(&start).map_err(snapshot)?;
         let (mut action, mut first_difference) = (Vec::with_capacity(na), None);
         for (t, &expected) in checksums.iter().enumerate() {

@@ -44,12 +44,17 @@ struct Told {
     episode_return: Vec<f64>,
 }
 
+/// What the names of changed arrays of the model begin with.
+pub(super) const MODEL: &str = "model.";
+
 /// An episode as it is recorded.
 #[derive(Debug, Default)]
 pub(super) struct Rows {
     dt: f64,
     columns: [usize; 3],
     snapshot: Vec<u8>,
+    /// What a program had changed of the model.
+    changes: Vec<(&'static str, Vec<f64>)>,
     qpos0: Vec<f64>,
     qvel0: Vec<f64>,
     activity0: Vec<f64>,
@@ -84,6 +89,7 @@ impl Rows {
         self.dt = env.blueprint().dt();
         self.columns = [env.action_space().len(), state.qpos.len(), state.qvel.len()];
         self.snapshot = env.snapshot().as_bytes().to_vec();
+        self.changes = env.changed_numbers();
         self.qpos0.clone_from(&state.qpos);
         self.qvel0.clone_from(&state.qvel);
         self.activity0.clone_from(&state.act);
@@ -185,6 +191,9 @@ impl Rows {
         let mut out = Archive::default();
         let (t, [na, nq, nv]) = (self.len(), self.columns);
         out.put("snapshot", &[self.snapshot.len()], &self.snapshot, Packing::Fast)?;
+        for (name, numbers) in &self.changes {
+            out.put(&format!("{MODEL}{name}"), &[numbers.len()], numbers, Packing::Fast)?;
+        }
         out.put("qpos0", &[nq], &self.qpos0, Packing::Stored)?;
         out.put("qvel0", &[nv], &self.qvel0, Packing::Stored)?;
         out.put("activity0", &[self.activity0.len()], &self.activity0, Packing::Stored)?;
