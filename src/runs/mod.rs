@@ -56,7 +56,6 @@ mod training;
 
 pub use logs::{EvaluationLog, TrainingTotals};
 pub use logs::{LogError, TrainingLog, read_training};
-pub use logs::{EvaluationLog, TrainingTotals};
 pub use crate::files::Owner;
 pub use many::RunVector;
 #[cfg(feature = "npz")]
