@@ -5,6 +5,7 @@ use std::f64::consts::PI;
 
 use crate::model::{BiasType, DynType, GainType};
 
+use super::attached::States;
 use super::attribute::Sign::{Any, NonNegative};
 use super::attribute::{FLAG, Kind, RANGE, TEXT, int, real, reals, some};
 use super::error::UNREAD;
@@ -32,6 +33,7 @@ table! {
         also at_site: AtSite = AtSite::initial();
         also on_body: OnBody = OnBody::initial();
         also inheritrange: f64 = 0.0;
+        also states: States = States::new();
         "name" name: String = String::new(), TEXT, own, "Name.";
         "forcelimited" forcelimited: Tri = Tri::Auto, TRI, "Whether `forcerange` is enforced.";
         "ctrlrange" ctrlrange: [f64; 2] = [0.0; 2], RANGE, "Range of the control.";
@@ -143,16 +145,16 @@ table! {
 table! {
     /// Attributes of `<muscle>`.
     group Muscle {
-        "timeconst" timeconst: [f64; 2] = [-1.0; 2], reals(2, Any), "Time constants of activation and deactivation, s; 0.01 and 0.04 if no default gives others.";
+        "timeconst" timeconst: Option<[f64; 2]> = None, reals(2, Any), "Time constants of activation and deactivation, s; 0.01 and 0.04 if no default gives others.";
         "tausmooth" tausmooth: Option<f64> = None, real(NonNegative), own, "Width of the transition between them, in differences of control and activation.";
-        "range" range: [f64; 2] = [-1.0; 2], reals(2, Any), "What the ends of `lengthrange` are in optimal lengths; 0.75 and 1.05 if no default gives others.";
-        "force" force: f64 = -1.0, real(Any), "Isometric force, N; negative for that which `scale` gives.";
-        "scale" scale: f64 = -1.0, real(Any), "Isometric force times the acceleration per unit force at `qpos0`; 200 if no default gives another.";
-        "lmin" lmin: f64 = -1.0, real(Any), "Shortest length with an active force, optimal lengths; 0.5 if no default gives another.";
-        "lmax" lmax: f64 = -1.0, real(Any), "Longest length with an active force, optimal lengths; 1.6 if no default gives another.";
-        "vmax" vmax: f64 = -1.0, real(Any), "Speed at which an unloaded muscle shortens, optimal lengths/s; 1.5 if no default gives another.";
-        "fpmax" fpmax: f64 = -1.0, real(Any), "Passive force at `lmax`, isometric forces; 1.3 if no default gives another.";
-        "fvmax" fvmax: f64 = -1.0, real(Any), "Active force when stretched fastest, isometric forces; 1.2 if no default gives another.";
+        "range" range: Option<[f64; 2]> = None, reals(2, Any), "What the ends of `lengthrange` are in optimal lengths; 0.75 and 1.05 if no default gives others.";
+        "force" force: Option<f64> = None, real(Any), "Isometric force, N; negative for that which `scale` gives.";
+        "scale" scale: Option<f64> = None, real(Any), "Isometric force times the acceleration per unit force at `qpos0`; 200 if no default gives another.";
+        "lmin" lmin: Option<f64> = None, real(Any), "Shortest length with an active force, optimal lengths; 0.5 if no default gives another.";
+        "lmax" lmax: Option<f64> = None, real(Any), "Longest length with an active force, optimal lengths; 1.6 if no default gives another.";
+        "vmax" vmax: Option<f64> = None, real(Any), "Speed at which an unloaded muscle shortens, optimal lengths/s; 1.5 if no default gives another.";
+        "fpmax" fpmax: Option<f64> = None, real(Any), "Passive force at `lmax`, isometric forces; 1.3 if no default gives another.";
+        "fvmax" fvmax: Option<f64> = None, real(Any), "Active force when stretched fastest, isometric forces; 1.2 if no default gives another.";
     }
 }
 
@@ -308,9 +310,11 @@ impl Actuator {
             fvmax,
             ..
         } = *muscle;
-        let forces = [range[0], range[1], force, scale, lmin, lmax, vmax, fpmax, fvmax];
+        let ends = |pair: Option<[f64; 2]>| [pair.map(|pair| pair[0]), pair.map(|pair| pair[1])];
+        let [low, high] = ends(range);
+        let forces = [low, high, force, scale, lmin, lmax, vmax, fpmax, fvmax];
         let law = &mut self.law;
-        fill(&mut law.dynprm, &TIMES, &muscle.timeconst);
+        fill(&mut law.dynprm, &TIMES, &ends(muscle.timeconst));
         fill(&mut law.gainprm, &FORCES, &forces);
         law.dynprm[2] = muscle.tausmooth.unwrap_or(law.dynprm[2]);
         law.biasprm[..9].copy_from_slice(&law.gainprm[..9]);
@@ -318,16 +322,13 @@ impl Actuator {
     }
 }
 
-/// Fills parameters: where they are those of an actuator that nothing is given of, with `own`, and then with those of `given` that are
-/// not negative.
-fn fill(parameters: &mut [f64; PARAMETERS], own: &[f64], given: &[f64]) {
+/// Fills parameters: where they are those of an actuator that nothing is given of, with `own`, and then with those that are given.
+fn fill(parameters: &mut [f64; PARAMETERS], own: &[f64], given: &[Option<f64>]) {
     let untouched = first(1.0);
     for (k, (own, given)) in own.iter().zip(given).enumerate() {
         if parameters[k] == untouched[k] {
             parameters[k] = *own;
         }
-        if *given >= 0.0 {
-            parameters[k] = *given;
-        }
+        parameters[k] = given.unwrap_or(parameters[k]);
     }
 }

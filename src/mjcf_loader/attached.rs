@@ -1,5 +1,7 @@
 //! Models whose bodies `<attach>` takes, the names of what refers to others, and keyframes that come along.
 
+use std::collections::{BTreeMap, BTreeSet};
+
 use super::actuator::Actuator;
 use super::custom::Key;
 use super::document::{Body, Document};
@@ -41,11 +43,81 @@ pub(super) trait Referring: Clone {
     fn left(&self) -> Option<(Thing, String)> {
         None
     }
+
+    /// Adds `suffix` to the names that it refers to, where that names something, as MuJoCo 3.3.0 does for a copy of the element; returns
+    /// whether it makes the copy. With an empty suffix the result tells whether all is there that the element refers to.
+    fn readdress(&mut self, suffix: &str, known: &Known) -> bool {
+        let mut names = self.names();
+        names.retain(|(_, name)| !name.is_empty());
+        let found: Vec<bool> = names
+            .iter()
+            .map(|(thing, name)| known.has(*thing, name, suffix))
+            .collect();
+        let some = found.contains(&true);
+        // what of two is not copied may be there itself
+        let there = |((thing, name), found): (&(Thing, &mut String), &bool)| *found || known.has(*thing, name, "");
+        let whole = match (some, Self::LOOSE) {
+            (false, _) => names.is_empty() && Self::LOOSE,
+            (true, true) => names.iter().zip(&found).all(there),
+            (true, false) => !found.contains(&false),
+        };
+        if whole {
+            let copied = names.into_iter().zip(found).filter(|(_, found)| *found);
+            copied.for_each(|((_, name), _)| name.push_str(suffix));
+        }
+        whole
+    }
+
+    /// Forgets what keyframes say of it.
+    fn forget(&mut self) {}
+}
+
+/// The names that elements may refer to.
+#[derive(Default)]
+pub(super) struct Known {
+    names: BTreeMap<Thing, BTreeSet<String>>,
+}
+
+impl Known {
+    /// Collects the names of bodies and what hangs on them, tendons and actuators.
+    pub fn of(document: &Document) -> Self {
+        let mut known = Self::default();
+        known.add(document.bodies.iter().flat_map(hanging));
+        known.add(document.tendons.iter().map(|tendon| (Thing::Tendon, &tendon.name)));
+        known.add(
+            document
+                .actuators
+                .iter()
+                .map(|actuator| (Thing::Actuator, &actuator.name)),
+        );
+        known
+    }
+
+    pub fn add<'a>(&mut self, names: impl Iterator<Item = (Thing, &'a String)>) {
+        for (thing, name) in names.filter(|(_, name)| !name.is_empty()) {
+            self.names.entry(thing).or_default().insert(name.clone());
+        }
+    }
+
+    pub fn remove(&mut self, thing: Thing, name: &str) {
+        self.names.entry(thing).or_default().remove(name);
+    }
+
+    /// Tells whether there is something whose name is `name` with `suffix` behind.
+    fn has(&self, thing: Thing, name: &str, suffix: &str) -> bool {
+        let Some(names) = self.names.get(&thing) else {
+            return false;
+        };
+        match suffix {
+            "" => names.contains(name),
+            _ => names.contains(&format!("{name}{suffix}")),
+        }
+    }
 }
 
 /// Says what the elements refer to that have an `at` and a `name`.
 macro_rules! referring {
-    ($($element:ident, $loose:literal, $this:ident => $names:expr $(, $left:expr)?;)*) => {$(
+    ($($element:ident, $loose:literal, $this:ident => $names:expr $(, { $($own:tt)* })?;)*) => {$(
         impl Referring for $element {
             const LOOSE: bool = $loose;
 
@@ -62,9 +134,7 @@ macro_rules! referring {
                 $names
             }
 
-            $(fn left(&self) -> Option<(Thing, String)> {
-                $left(self)
-            })?
+            $($($own)*)?
         }
     )*};
 }
@@ -72,8 +142,20 @@ referring! {
     Pair, true, pair => vec![(Thing::Geom, &mut pair.geom1), (Thing::Geom, &mut pair.geom2)];
     Exclude, true, exclude => vec![(Thing::Body, &mut exclude.body1), (Thing::Body, &mut exclude.body2)];
     Equality, false, equality => held(&mut equality.held);
-    Tendon, true, tendon => tendon.path.iter_mut().flat_map(along).collect(), wrapped;
-    Actuator, false, actuator => driven(actuator);
+    Tendon, true, tendon => tendon.path.iter_mut().flat_map(along).collect(), {
+        fn left(&self) -> Option<(Thing, String)> {
+            wrapped(self)
+        }
+
+        fn readdress(&mut self, suffix: &str, known: &Known) -> bool {
+            thread(&mut self.path, suffix, known)
+        }
+    };
+    Actuator, false, actuator => driven(actuator), {
+        fn forget(&mut self) {
+            self.states.clear();
+        }
+    };
     Sensor, true, sensor => measured(&mut sensor.object);
 }
 
@@ -103,6 +185,28 @@ fn along(piece: &mut Along) -> Vec<(Thing, &mut String)> {
         }
         Along::Pulley(_) => Vec::new(),
     }
+}
+
+/// As [`Referring::readdress`], of what a tendon runs along: pieces of which there are no copies stay. One with a geom and no side site is not
+/// copied, because MuJoCo 3.3.0 looks for a side site whose name is the suffix alone.
+fn thread(path: &mut [Along], suffix: &str, known: &Known) -> bool {
+    let mut copied = false;
+    for piece in path {
+        let bare = matches!(piece, Along::Geom(geom) if geom.sidesite.as_ref().is_none_or(String::is_empty));
+        let mut names = along(piece);
+        names.retain(|(_, name)| !name.is_empty());
+        if names.is_empty() {
+            continue; // a pulley
+        }
+        let all = |suffix: &str| names.iter().all(|(thing, name)| known.has(*thing, name, suffix));
+        if all(suffix) && (suffix.is_empty() || !bare) {
+            names.into_iter().for_each(|(_, name)| name.push_str(suffix));
+            copied = true;
+        } else if !all("") {
+            return false;
+        }
+    }
+    copied
 }
 
 /// Returns the first geom that a tendon wraps around without a side site.
@@ -188,87 +292,64 @@ fn framed(of: FrameOf) -> Thing {
     }
 }
 
-/// A keyframe of another model: what it says of all that comes along. The rest is as in `qpos0`.
+/// A keyframe that has left its model, with the document's name for it. What it says is kept by what it says it of: the rest is as in `qpos0`.
 #[derive(Clone)]
-pub(super) struct AttachedKey {
+pub(super) struct MovedKey {
     pub at: usize,
     pub name: String,
     pub time: f64,
-    pub parts: Vec<KeyPart>,
 }
 
-/// The part of a keyframe that concerns one element.
-#[derive(Clone)]
-pub(super) struct KeyPart {
-    pub of: Keyed,
-    pub values: Vec<f64>,
+/// What keyframes say of one element, by their names: `qpos` and `qvel` of a joint, `act` and `ctrl` of an actuator, `mpos` and `mquat` of a
+/// mocap body.
+pub(super) type States = BTreeMap<String, [Vec<f64>; 2]>;
+
+/// The numbers of coordinates of a document, so far.
+#[derive(Clone, Copy, Default)]
+pub(super) struct Sizes {
+    pub nq: usize,
+    pub nv: usize,
+    pub na: usize,
+    pub nu: usize,
+    pub nmocap: usize,
 }
 
-/// Of what a keyframe tells something. Bodies and actuators are meant by their place in the document, joints by that in their body.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Keyed {
-    Qpos { body: usize, joint: usize },
-    Qvel { body: usize, joint: usize },
-    Act(usize),
-    Ctrl(usize),
-    Mpos(usize),
-    Mquat(usize),
-}
-
-/// Says that a keyframe, one of the document by its place in the list, says the same as one of a model.
-#[derive(Clone, Copy)]
-pub(super) struct Saying {
-    pub key: usize,
-    pub as_in: usize,
-}
-
-/// A model whose bodies can be attached.
-pub(super) struct Attachable {
-    pub document: Document,
-    /// Parts of the document's keyframes that concern elements of the model that have not come along since they were made, as in MuJoCo,
-    /// which keeps it for the next time that something is taken.
-    pub said: Said,
-}
-
-/// Keyframes by joint, by actuator and by mocap body.
-#[derive(Clone, Default)]
-pub(super) struct Said {
-    pub joints: Vec<Vec<Saying>>,
-    pub actuators: Vec<Vec<Saying>>,
-    pub mocaps: Vec<Vec<Saying>>,
-}
-
-impl Attachable {
-    pub fn new(document: Document) -> Self {
-        let joints = document.bodies.iter().map(|body| body.joints.len()).sum();
-        let mocaps = document.bodies.iter().filter(|body| body.mocap).count();
-        let said = Said {
-            joints: vec![Vec::new(); joints],
-            actuators: vec![Vec::new(); document.actuators.len()],
-            mocaps: vec![Vec::new(); mocaps],
-        };
-        Self { document, said }
+impl Sizes {
+    pub fn of(document: &Document) -> Self {
+        let joints = || document.bodies.iter().flat_map(|body| &body.joints);
+        Self {
+            nq: joints().map(|joint| joint.kind.nq()).sum(),
+            nv: joints().map(|joint| joint.kind.nv()).sum(),
+            na: document.actuators.iter().map(na).sum(),
+            nu: document.actuators.len(),
+            nmocap: document.bodies.iter().filter(|body| body.mocap).count(),
+        }
     }
 
-    /// Returns the first attribute of a keyframe of the model whose length is another than that of the model's state, and both lengths.
+    /// Returns how many numbers a keyframe has.
+    fn numbers(&self) -> usize {
+        self.nq + self.nv + self.na + self.nu + 7 * self.nmocap
+    }
+
+    /// Returns the first attribute of a keyframe whose length is another than that of the state, and both lengths.
     pub fn misfit(&self, key: &Key) -> Option<(&'static str, usize, usize)> {
-        let joints = || self.document.bodies.iter().flat_map(|body| &body.joints);
-        let nq: usize = joints().map(|joint| joint.kind.nq()).sum();
-        let nv: usize = joints().map(|joint| joint.kind.nv()).sum();
-        let na: usize = self.document.actuators.iter().map(na).sum();
-        let (nu, nmocap) = (self.said.actuators.len(), self.said.mocaps.len());
         let given = [
-            ("qpos", key.qpos.len(), nq),
-            ("qvel", key.qvel.len(), nv),
-            ("act", key.act.len(), na),
-            ("ctrl", key.ctrl.len(), nu),
-            ("mpos", key.mpos.len(), 3 * nmocap),
-            ("mquat", key.mquat.len(), 4 * nmocap),
+            ("qpos", key.qpos.len(), self.nq),
+            ("qvel", key.qvel.len(), self.nv),
+            ("act", key.act.len(), self.na),
+            ("ctrl", key.ctrl.len(), self.nu),
+            ("mpos", key.mpos.len(), 3 * self.nmocap),
+            ("mquat", key.mquat.len(), 4 * self.nmocap),
         ];
         given
             .into_iter()
             .find(|(_, found, wanted)| *found > 0 && found != wanted)
     }
+}
+
+/// Returns how many numbers the keyframes of a document have.
+pub(super) fn said(document: &Document) -> usize {
+    document.keys.len() * Sizes::of(document).numbers()
 }
 
 /// Returns the number of activations of an actuator.
@@ -299,14 +380,13 @@ pub(super) struct Amount {
     elements: usize,
     /// Numbers of assets.
     numbers: usize,
-    /// Number of parts of keyframes.
+    /// Numbers in keyframes.
     said: usize,
 }
 
 impl Amount {
     /// Counts all of a model.
-    pub fn of(model: &Attachable) -> Self {
-        let from = &model.document;
+    pub fn of(from: &Document) -> Self {
         let hung: usize = from
             .bodies
             .iter()
@@ -331,12 +411,23 @@ impl Amount {
             )
             .chain(from.numerics.iter().map(|numeric| numeric.data.len()))
             .sum();
-        let said = &model.said;
         Self {
             elements: 1 + hung + referring + pieces + measured + assets + rest,
             numbers,
-            said: from.keys.len() * (said.joints.len() + said.actuators.len() + said.mocaps.len()),
+            said: said(from),
         }
+    }
+
+    /// Adds the numbers in a document's keyframes.
+    ///
+    /// # Errors
+    /// As [`Amount::add`].
+    pub(super) fn add_keys(&mut self, said: usize, at: usize, tree: &Tree) -> Result<(), LoadError> {
+        let others = Self {
+            said,
+            ..Self::default()
+        };
+        self.add(others, at, tree)
     }
 
     /// Adds others for the element at a place.

@@ -46,8 +46,14 @@ pub(super) enum Kind {
     Poses,
     /// Numbers of a mesh, as many as the limits allow.
     Data,
+    /// Whole numbers of a mesh, as many as the limits allow.
+    Indices,
     /// Two whole numbers.
     Ints,
+    /// Text that nothing copies, as long as a document may be.
+    LongText,
+    /// A number of bytes, with a letter for its unit, or -1.
+    Memory,
     /// Groups of actuators from 0 to 30, of which each is a bit.
     Groups,
 }
@@ -79,6 +85,16 @@ impl Kind {
 
     pub fn visit(self, field: &mut impl Store, visit: Visit) {
         visit(field);
+    }
+
+    /// Tells whether values are lists of numbers, of which an empty one counts as not given.
+    pub const fn is_numbers(self) -> bool {
+        match self {
+            Kind::Reals { .. } | Kind::Range | Kind::Quat | Kind::User | Kind::State | Kind::Poses | Kind::Data => true,
+            Kind::Indices | Kind::Ints => true,
+            Kind::Text | Kind::LongText | Kind::Flag | Kind::Word(_) | Kind::Int { .. } | Kind::EulerSeq => false,
+            Kind::UserCount | Kind::Groups | Kind::Memory => false,
+        }
     }
 }
 
@@ -267,7 +283,12 @@ impl Attr {
                 what: "bytes in a name or path",
                 limit: limits.text_bytes,
             }),
-            Kind::Text => Ok(Value::Text(text.to_owned())),
+            Kind::Text | Kind::LongText => Ok(Value::Text(text.to_owned())),
+            Kind::Memory if is_memory(text) => Ok(Value::Text(text.to_owned())),
+            Kind::Memory => Err(ErrorKind::BadNumber {
+                attribute,
+                text: excerpt(text),
+            }),
             Kind::Flag => Ok(Value::Flag(word(attribute, text, &["false", "true"])? == 1)),
             Kind::Word(allowed) => Ok(Value::Word(word(attribute, text, allowed)?)),
             Kind::Int { min, max } => whole(attribute, text, min, max).map(Value::Int),
@@ -278,16 +299,10 @@ impl Attr {
             Kind::State => numbers(attribute, text, 0, limits.state(), Sign::Any, limits.real).map(Value::Reals),
             Kind::Poses => numbers(attribute, text, 0, 4 * limits.bodies, Sign::Any, limits.real).map(Value::Reals),
             Kind::Data => numbers(attribute, text, 0, limits.mesh_numbers, Sign::Any, limits.real).map(Value::Reals),
-            Kind::Ints => {
-                let values = numbers(attribute, text, 2, 2, Sign::Any, f64::from(i32::MAX))?;
-                match values.iter().find(|value| value.fract() != 0.0) {
-                    Some(_) => Err(ErrorKind::BadNumber {
-                        attribute,
-                        text: excerpt(text),
-                    }),
-                    None => Ok(Value::Reals(values)),
-                }
+            Kind::Indices => {
+                each(attribute, text, 0, limits.mesh_numbers, |word| integer(attribute, word)).map(Value::Reals)
             }
+            Kind::Ints => each(attribute, text, 2, 2, |word| integer(attribute, word)).map(Value::Reals),
             Kind::Groups => {
                 let each = |word: &str| whole(attribute, word, 0, 30).map(|group| 1 << group);
                 let mut bits = text.split_ascii_whitespace().map(each);
@@ -339,6 +354,25 @@ fn whole(attribute: &'static str, text: &str, min: i64, max: i64) -> Result<i64,
         min,
         max,
     })
+}
+
+/// Reads a whole number of a list: digits alone, as in MuJoCo.
+fn integer(attribute: &'static str, text: &str) -> Result<f64, ErrorKind> {
+    let (min, max) = (i64::from(i32::MIN), i64::from(i32::MAX));
+    whole(attribute, text, min, max).map(|value| value as f64)
+}
+
+/// Tells whether a text is a number of bytes as MuJoCo reads it: digits with a letter for 2^10 to 2^60 behind, or -1 for its own choice.
+fn is_memory(text: &str) -> bool {
+    let text = text.trim_ascii();
+    let units = ['k', 'm', 'g', 't', 'p', 'e'];
+    let unit = |end: char| units.iter().position(|unit| *unit == end.to_ascii_lowercase());
+    let (digits, shift) = match text.chars().next_back().and_then(unit) {
+        Some(place) => (&text[..text.len() - 1], 10 * (place as u32 + 1)),
+        None => (text, 0),
+    };
+    let bytes = digits.parse::<u64>().ok().filter(|_| !digits.starts_with('+'));
+    text == "-1" || bytes.is_some_and(|bytes| bytes.leading_zeros() >= shift || bytes == 0)
 }
 
 fn numbers(

@@ -21,7 +21,7 @@ table! {
     /// `<custom><text>`.
     element Text {
         "name" name: String = String::new(), TEXT, required, "Name.";
-        "data" data: String = String::new(), TEXT, required, "Text.";
+        "data" data: String = String::new(), Kind::LongText, required, "Text.";
     }
 }
 

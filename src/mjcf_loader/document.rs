@@ -1,13 +1,13 @@
 //! The typed document: every element with its defaults applied, references still by name, angles still as written. Here
 //! are the tables of bodies and what hangs on them, and the document as a whole.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 
 use crate::math::Vec3;
 use crate::model::{self, CamLight, GeomType, JointType, Options, Statistic};
 
 use super::actuator::Actuator;
-use super::attached::{Absent, Amount, Attachable, AttachedKey};
+use super::attached::{Absent, Amount, MovedKey, States};
 use super::attribute::Sign::{Any, NonNegative, Positive};
 use super::attribute::{FLAG, INTS, Kind, RANGE, TEXT, int, real, reals, some};
 use super::custom::{Key, Numeric, Text, Tuple};
@@ -17,7 +17,9 @@ use super::sensor::Sensor;
 use super::skin::Skin;
 use super::surface::{Material, Texture};
 use super::table::{Table, table};
-use super::words::{CAM_LIGHT, FLUID, GREY, JOINTS, MAX_BITS, MAX_GROUP, SHAPES, SITE_SHAPES, SOLIMP, SOLREF, TRI};
+use super::words::{
+    CAM_LIGHT, FLUID, GREY, JOINTS, MAX_BITS, MAX_GROUP, MIN_BITS, SHAPES, SITE_SHAPES, SOLIMP, SOLREF, TRI,
+};
 
 use super::settings::Visual;
 pub(super) use super::settings::{Compiler, LengthRange, Size};
@@ -28,6 +30,7 @@ table! {
     element Joint {
         also within: Option<usize> = None;
         also align: Tri = Tri::Auto;
+        also states: States = States::new();
         "name" name: String = String::new(), TEXT, own, "Name.";
         "type" kind: JointType = JointType::Hinge, JOINTS, "Kind of motion.";
         "group" group: usize = 0, int(0, MAX_GROUP), "Visual group.";
@@ -71,8 +74,8 @@ table! {
         "name" name: String = String::new(), TEXT, own, "Name.";
         "type" kind: GeomType = GeomType::Sphere, SHAPES, "Shape.";
         "size" size: Vec3 = [0.0; 3], some(1, 3, NonNegative), "Size, m: radius, half lengths.";
-        "contype" contype: u32 = 1, int(0, MAX_BITS), "Bits that meet `conaffinity` of others.";
-        "conaffinity" conaffinity: u32 = 1, int(0, MAX_BITS), "Bits that meet `contype` of others.";
+        "contype" contype: u32 = 1, int(MIN_BITS, MAX_BITS), "Bits that meet `conaffinity` of others.";
+        "conaffinity" conaffinity: u32 = 1, int(MIN_BITS, MAX_BITS), "Bits that meet `contype` of others.";
         "condim" condim: usize = 3, int(1, 6), "Dimension of its contacts: 1, 3, 4 or 6.";
         "priority" priority: i32 = 0, int(i32::MIN as i64, i32::MAX as i64), "Priority where contact parameters are mixed.";
         "group" group: usize = 0, int(0, MAX_GROUP), "Visual group.";
@@ -121,6 +124,7 @@ table! {
         "name" name: String = String::new(), TEXT, own, "Name.";
         "mode" mode: CamLight = CamLight::Fixed, CAM_LIGHT, "How it is placed and aimed.";
         "target" target: Option<String> = None, TEXT, own, "Body that it looks at in modes `targetbody` and `targetbodycom`.";
+        "orthographic" orthographic: bool = false, FLAG, "Whether its rays are parallel; `fovy` is then the height of the picture, m. Asking for its picture is an error.";
         "resolution" resolution: [f64; 2] = [1.0; 2], INTS, "Width and height of the picture, pixels, for `camprojection` alone: pictures have the size that the caller asks for.";
         "fovy" fovy: f64 = 45.0, real(Positive), "Vertical field of view, degrees; else by sensor and focal length.";
         "sensorsize" sensorsize: [f64; 2] = [0.0; 2], reals(2, Any), "Width and height of the sensor, m, with `resolution` and a focal length, in place of `fovy`.";
@@ -142,6 +146,7 @@ table! {
         "mode" mode: CamLight = CamLight::Fixed, CAM_LIGHT, "How it is placed and aimed.";
         "target" target: Option<String> = None, TEXT, own, "Body that it shines at in modes `targetbody` and `targetbodycom`.";
         "directional" directional: bool = false, FLAG, "Whether its rays are parallel.";
+        "active" active: bool = true, FLAG, "Whether it is on.";
         "castshadow" castshadow: bool = true, FLAG, "Whether it casts shadows, which are not drawn.";
         "pos" pos: Vec3 = [0.0; 3], reals(3, Any), "Position in the body, m.";
         "dir" dir: Vec3 = [0.0, 0.0, -1.0], reals(3, Any), "Direction in the body.";
@@ -177,6 +182,7 @@ table! {
         also sites: Vec<Site> = Vec::new();
         also cameras: Vec<Camera> = Vec::new();
         also lights: Vec<Light> = Vec::new();
+        also states: States = States::new();
         "name" name: String = String::new(), TEXT, own, "Name.";
         "user" user: Vec<f64> = Vec::new(), Kind::User, "Numbers for programs.";
         "mocap" mocap: bool = false, FLAG, "Whether a program moves it, by `mocap_pos` and `mocap_quat` of the state.";
@@ -255,16 +261,15 @@ pub(super) struct Document {
     pub bodies: Vec<Body>,
     /// Frames in the bodies, which elements name by their place here.
     pub frames: Vec<BodyFrame>,
-    /// Suffixes that each `<replicate>` adds to the names of its copies.
-    pub suffixes: BTreeSet<String>,
-    /// Whether a `<replicate>` stands in this document itself.
-    pub replicates: bool,
+    /// How much each `<replicate>` copied, and how many elements were looked at for what refers to copies.
+    pub copies: usize,
+    pub looks: usize,
     /// References to elements that did not come along with bodies of other models.
     pub absent: Vec<Absent>,
     /// How much was copied of other models, here and in those.
     pub copied: Amount,
     /// Other models, by name.
-    pub models: BTreeMap<String, Attachable>,
+    pub models: BTreeMap<String, Document>,
     pub pairs: Vec<Pair>,
     pub excludes: Vec<Exclude>,
     pub equalities: Vec<Equality>,
@@ -275,8 +280,8 @@ pub(super) struct Document {
     pub tuples: Vec<Tuple>,
     pub texts: Vec<Text>,
     pub keys: Vec<Key>,
-    /// Keyframes of other models, which follow the document's own.
-    pub attached_keys: Vec<AttachedKey>,
+    /// Keyframes that came along with bodies of other models or with copies; they follow the document's own.
+    pub moved_keys: Vec<MovedKey>,
 }
 
 impl Document {
@@ -303,8 +308,8 @@ impl Document {
             mesh_density: Geom::initial().density,
             bodies: vec![world],
             frames: Vec::new(),
-            suffixes: BTreeSet::new(),
-            replicates: false,
+            copies: 0,
+            looks: 0,
             absent: Vec::new(),
             copied: Amount::default(),
             models: BTreeMap::new(),
@@ -318,7 +323,7 @@ impl Document {
             tuples: Vec::new(),
             texts: Vec::new(),
             keys: Vec::new(),
-            attached_keys: Vec::new(),
+            moved_keys: Vec::new(),
         }
     }
 }

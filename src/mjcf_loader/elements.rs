@@ -335,6 +335,9 @@ static TUPLE_ELEMENT: Rule = rule("element", &[TupleElement::ATTRIBUTES], &[]);
 static TUPLE: Rule = rule("tuple", &[Tuple::ATTRIBUTES], &[&TUPLE_ELEMENT]);
 static CUSTOM: Rule = rule("custom", &[], &[&NUMERIC, &CUSTOM_TEXT, &TUPLE]);
 
+/// Plugins, which are refused by their names; what declares them says nothing without.
+static EXTENSION: Rule = rule("extension", &[], &[]);
+
 static KEY: Rule = rule("key", &[Key::ATTRIBUTES], &[]);
 static KEYFRAME: Rule = rule("keyframe", &[], &[&KEY]);
 
@@ -359,5 +362,6 @@ pub(super) static MUJOCO: Rule = rule(
         &CUSTOM,
         &KEYFRAME,
         &DEFORMABLE,
+        &EXTENSION,
     ],
 );

@@ -68,13 +68,13 @@ pub enum ErrorKind {
     /// A file cannot be had from the source.
     #[error(transparent)]
     Asset(#[from] AssetError),
-    /// The file is not UTF-8.
-    #[error("not UTF-8 text")]
+    /// The file is neither UTF-8 nor says that it is Latin-1.
+    #[error("not UTF-8 text, nor does it begin with <?xml version=\"1.0\" encoding=\"ISO-8859-1\"?>")]
     NotUtf8,
     /// The text breaks the rules of XML.
     #[error("malformed XML: {}", quoted(.0))]
     Xml(String),
-    /// XML that is legal but has no place in MJCF: document types, text, CDATA, processing instructions.
+    /// XML that is legal but has no place in MJCF: entities, text outside the root, processing instructions in it.
     #[error("{0} is not allowed; remove it")]
     Forbidden(&'static str),
     /// A limit on untrusted input.
@@ -100,6 +100,22 @@ pub enum ErrorKind {
     /// An element that MuJoCo has since a version after 3.3.0.
     #[error("element \"{}\" is of a later MuJoCo than 3.3.0, whose language this is: remove it", quoted(.0))]
     LaterElement(String),
+    /// A plugin of MuJoCo.
+    #[error("plugin \"{}\" is a program of MuJoCo's own, which is not run here: {what}", quoted(.name))]
+    Plugin {
+        /// The plugin; empty where the element names an instance of one.
+        name: String,
+        /// What to do without it.
+        what: &'static str,
+    },
+    /// An element of a part of the language that is not supported.
+    #[error("element \"{}\": {what}", quoted(.name))]
+    UnsupportedElement {
+        /// The element.
+        name: String,
+        /// What it is, and what to do.
+        what: &'static str,
+    },
     /// An element that may stand here once only.
     #[error("element \"{}\" is given twice", quoted(.0))]
     RepeatedElement(&'static str),
@@ -196,10 +212,10 @@ pub enum ErrorKind {
         /// Most.
         max: usize,
     },
-    /// A mesh that cannot be read.
+    /// A mesh, a height field or a picture that cannot be read.
     #[error("{}{message}", .file.as_ref().map(|file| format!("file \"{}\": ", quoted(file))).unwrap_or_default())]
     Mesh {
-        /// The file; none for a mesh in the document itself.
+        /// The file; none for what stands in the document itself.
         file: Option<String>,
         /// Description of the fault.
         message: String,
@@ -223,18 +239,6 @@ pub enum ErrorKind {
     UnknownName {
         /// The attribute that refers.
         attribute: &'static str,
-        /// Kind of element.
-        kind: &'static str,
-        /// The name.
-        name: String,
-    },
-    /// A name that is referred to, and that a `<replicate>` could make another element's name of: MuJoCo 3.3.0 multiplies what refers to it.
-    #[error(
-        "MuJoCo 3.3.0 multiplies what refers to the {kind} \"{}\" with every copy that a <replicate> makes, because this name with what is added \
-         to copies is that of another {kind}: rename one of them",
-        quoted(.name)
-    )]
-    Twin {
         /// Kind of element.
         kind: &'static str,
         /// The name.

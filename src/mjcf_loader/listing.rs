@@ -90,7 +90,7 @@ fn info(attr: &Attr, classes: bool) -> AttributeInfo {
 /// Describes a kind of value in words.
 fn values(kind: Kind) -> String {
     match kind {
-        Kind::Text => "text".to_owned(),
+        Kind::Text | Kind::LongText => "text".to_owned(),
         Kind::Flag => "false, true".to_owned(),
         Kind::Word(words) => words.join(", "),
         Kind::Int { min, max: i64::MAX } => format!("whole number from {min}"),
@@ -98,7 +98,9 @@ fn values(kind: Kind) -> String {
         Kind::Range => "2 numbers or infinities".to_owned(),
         Kind::Quat => "4 numbers, not all 0".to_owned(),
         Kind::User | Kind::State | Kind::Poses | Kind::Data => "numbers".to_owned(),
+        Kind::Indices => "whole numbers".to_owned(),
         Kind::Ints => "2 whole numbers".to_owned(),
+        Kind::Memory => "whole number, with a letter of KMGTPE behind, or -1".to_owned(),
         Kind::Groups => "whole numbers, 0 to 30".to_owned(),
         Kind::UserCount => "whole number from -1".to_owned(),
         Kind::EulerSeq => "three letters of xyzXYZ".to_owned(),

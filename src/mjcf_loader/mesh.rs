@@ -36,7 +36,7 @@ table! {
         "vertex" vertex: Vec<f64> = Vec::new(), Kind::Data, own, "Vertices, m, three numbers each.";
         "normal" normal: Vec<f64> = Vec::new(), Kind::Data, own, "Normals of the vertices, three numbers each; else they follow from the faces.";
         "texcoord" texcoord: Vec<f64> = Vec::new(), Kind::Data, own, "Texture coordinates of the vertices, two numbers each, from the top of the image.";
-        "face" face: Vec<f64> = Vec::new(), Kind::Data, own, "Vertices of each triangle, from 0, counterclockwise from outside; else the triangles of the convex hull.";
+        "face" face: Vec<f64> = Vec::new(), Kind::Indices, own, "Vertices of each triangle, from 0, counterclockwise from outside; else the triangles of the convex hull.";
         "refpos" refpos: Vec3 = [0.0; 3], reals(3, Any), own, "Point that becomes the origin of the mesh, m.";
         "refquat" refquat: [f64; 4] = [1.0, 0.0, 0.0, 0.0], Kind::Quat, own, "Orientation that becomes the axes of the mesh.";
         "scale" scale: Vec3 = [1.0; 3], reals(3, Any), "Factors on the coordinates, after `refpos` and `refquat`.";

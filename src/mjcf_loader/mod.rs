@@ -89,8 +89,8 @@ pub fn load(source: &dyn AssetSource, path: &str) -> Result<Spec, LoadError> {
 pub fn load_with(source: &dyn AssetSource, path: &str, limits: &Limits) -> Result<Spec, LoadError> {
     let path = source.resolve("", path).map_err(|e| LoadError::in_file(path, e))?;
     let bytes = source.read(&path).map_err(|e| LoadError::in_file(&path, e))?;
-    let text = std::str::from_utf8(&bytes).map_err(|_| LoadError::in_file(&path, ErrorKind::NotUtf8))?;
-    load_str_with(text, &path, source, limits)
+    let text = xml::text_of(&bytes).map_err(|kind| LoadError::in_file(&path, kind))?;
+    load_str_with(&text, &path, source, limits)
 }
 
 /// Loads a document given as text, as if it were the file `virtual_path` of `source`.

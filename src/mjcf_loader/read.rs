@@ -1,17 +1,17 @@
 //! Checked elements -> typed document: sections in MuJoCo's order, default classes applied.
 
 mod attach;
-mod attach_keys;
 mod cable;
 mod cable_skin;
 mod content;
+mod keys;
+mod replicate;
 #[cfg(test)]
 mod tests;
 
 use std::collections::BTreeMap;
 
 use super::actuator::Actuator;
-use super::attached::Attachable;
 use super::custom::{Key, Numeric, Text, Tuple};
 use super::document::{Camera, Compiler, Document, Geom, Joint, Light, ModelAsset, Site};
 use super::elements;
@@ -19,7 +19,7 @@ use super::error::{ErrorKind, LoadError, UNREAD};
 use super::mesh::{HField, Mesh};
 use super::relation::{Equality, Exclude, Pair, Tendon};
 use super::schema::{self, DEFAULT, Element};
-use super::sensor::{Object, Sensor};
+use super::sensor::Sensor;
 use super::settings::{Root, Visual};
 use super::skin::{Bone, Skin};
 use super::surface::{Material, Texture};
@@ -51,7 +51,11 @@ impl Class {
             "joint" => self.joint.apply(e),
             "geom" => self.geom.apply(e),
             "site" => self.site.apply(e),
-            "camera" => return self.camera.look(e),
+            "camera" => {
+                self.camera.look(e)?;
+                // MuJoCo 3.3.0 reads no user data of cameras there
+                self.camera.user.clear();
+            }
             "light" => self.light.apply(e),
             "pair" => self.pair.apply(e),
             "equality" => self.equality.apply(e),
@@ -198,14 +202,17 @@ fn read_model(parts: &Parts, index: usize) -> Result<Document, LoadError> {
                     .iter()
                     .for_each(|flags| document.option.flags.apply(flags));
             }
-            "size" => document.size.apply(section),
+            "size" => document
+                .size
+                .section(section)
+                .map_err(|what| tree.error(section.at, ErrorKind::Invalid(what)))?,
             "visual" => section.children.iter().try_for_each(|e| {
                 let wrong = |what| tree.error(e.at, ErrorKind::Invalid(what));
                 visual.apply(e).map_err(wrong)
             })?,
             "statistic" => document.statistic.apply(section),
             // read before this, or after all others
-            "compiler" | DEFAULT | "worldbody" => {}
+            "compiler" | DEFAULT | "worldbody" | "extension" => {}
             name @ ("asset" | "contact" | "equality" | "tendon" | "actuator" | "sensor" | "custom" | "keyframe"
             | "deformable") => section
                 .children
@@ -224,7 +231,6 @@ fn read_model(parts: &Parts, index: usize) -> Result<Document, LoadError> {
         content(section, Spot::WORLD, MAIN, &classes, &mut document)?;
     }
     document.visual = visual.compiled();
-    check_copies(tree, &document)?;
     attach::check_absent(tree, &document)?;
     Ok(document)
 }
@@ -239,31 +245,8 @@ fn add_model(parts: &Parts, index: usize, e: &Element, document: &mut Document) 
     if document.models.contains_key(&name) {
         return Err(parts.tree.error(e.at, ErrorKind::DuplicateName { kind, name }));
     }
-    document.models.insert(name, Attachable::new(model));
+    document.models.insert(name, model);
     Ok(())
-}
-
-/// Why what MuJoCo copies with what a `<replicate>` holds, though it is not in there, is refused.
-const MULTIPLIED: &str =
-    "MuJoCo 3.3.0 multiplies it with every copy that a <replicate> makes: write the copies out, or leave it out";
-
-/// Refuses what MuJoCo multiplies beside what a `<replicate>` holds: sensors of no object, and keyframes.
-fn check_copies(tree: &Tree, document: &Document) -> Result<(), LoadError> {
-    if !document.replicates {
-        return Ok(());
-    }
-    let of_nothing = |sensor: &&Sensor| match &sensor.object {
-        Object::Nothing => true,
-        Object::User(user) => user.objtype.is_none(),
-        _ => false,
-    };
-    let sensor = document.sensors.iter().find(of_nothing).map(|sensor| sensor.at);
-    let key = document.keys.first().map(|key| key.at);
-    let key = key.or(document.attached_keys.first().map(|key| key.at));
-    match sensor.or(key) {
-        Some(at) => Err(tree.error(at, ErrorKind::Invalid(MULTIPLIED))),
-        None => Ok(()),
-    }
 }
 
 /// Adds an element of a section that lists its elements one after another.

@@ -88,10 +88,35 @@ fn once(parent: &str, child: &str) -> bool {
     }
 }
 
+const FLEX: &str = "deformable bodies are not simulated here: make them of bodies and joints, or leave them out";
+
+/// Tells what to do about an element of 3.3.0 that is not supported.
+fn unsupported(node: &Node) -> Option<ErrorKind> {
+    let name = match node.name.as_str() {
+        "plugin" => node.attribute("plugin").unwrap_or_default().to_owned(),
+        "flex" | "flexcomp" => {
+            let (name, what) = (node.name.clone(), FLEX);
+            return Some(ErrorKind::UnsupportedElement { name, what });
+        }
+        _ => return None,
+    };
+    let what = match name.as_str() {
+        "mujoco.pid" => "write actuators of position, and of intvelocity for the integral",
+        "mujoco.elasticity.cable" => "give the joints of the cable stiffness and damping, or leave it out",
+        "mujoco.sensor.touch_grid" => "write touch sensors on sites",
+        sdf if sdf.starts_with("mujoco.sdf.") => "write the shape as a mesh or of other shapes",
+        _ => "remove it",
+    };
+    Some(ErrorKind::Plugin { name, what })
+}
+
 fn child_rule(tree: &Tree, child: usize, rule: &'static Rule) -> Result<&'static Rule, LoadError> {
     let name = &tree.nodes[child].name;
     let found = rule.children.iter().find(|rule| rule.name == name);
     found.copied().ok_or_else(|| {
+        if let Some(kind) = unsupported(&tree.nodes[child]) {
+            return tree.error(child, kind);
+        }
         let later = later::element(rule.name, name);
         let kind = if later {
             ErrorKind::LaterElement
@@ -139,6 +164,10 @@ fn check_one(tree: &Tree, at: usize, rule: &'static Rule, class: bool) -> Result
         let Some((attr, text)) = meant(node, rule, class, name, text).map_err(|kind| tree.error(at, kind))? else {
             continue;
         };
+        // as in MuJoCo, numbers that are none are not given
+        if attr.kind.is_numbers() && text.trim_ascii().is_empty() {
+            continue;
+        }
         values.push((
             attr.name,
             attr.parse(text, &tree.limits).map_err(|kind| tree.error(at, kind))?,

@@ -42,6 +42,9 @@ table! {
     }
 }
 
+/// Greatest length of `userdata`.
+const MAX_USERDATA: i64 = 1_000_000;
+
 /// Which actuators get their `lengthrange` by simulation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LengthRangeMode {
@@ -132,7 +135,9 @@ table! {
         "magnetic" magnetic: Vec3 = [0.0, -0.5, 0.0], reals(3, Any), "Magnetic flux, which magnetometers read.";
         "actuatorgroupdisable" disableactuator: u32 = 0, Kind::Groups, "Groups of actuators that exert no force, from 0 to 30.";
         check "apirate", real(NonNegative), "Rate at which programs are to be told. Ignored.";
-        check "o_margin" | "o_solref" | "o_solimp" | "o_friction", some(1, 5, Any), "Parameters of all contacts where the flag `override` is on, which it cannot be. Ignored.";
+        check "o_margin", real(Any), "Margin of all contacts where the flag `override` is on, which it cannot be. Ignored.";
+        check "o_solref", some(1, 2, Any), "`solref` of all contacts, as `o_margin`. Ignored.";
+        check "o_solimp" | "o_friction", some(1, 5, Any), "`solimp` and friction of all contacts, as `o_margin`. Ignored.";
         check "sdf_iterations" | "sdf_initpoints", int(0, MAX_COUNT), "Collision of signed distance fields, of which there are none. Ignored.";
     }
 }
@@ -160,7 +165,10 @@ table! {
         "nativeccd" nativeccd: bool = true, SWITCH, "Whether convex collision is by GJK and EPA, MuJoCo's own; else by Minkowski portal refinement, as in libccd.";
         "multiccd" multiccd: bool = false, SWITCH, "Whether pairs of convex collision may have several contacts.";
         "island" island: bool = false, SWITCH, "Whether islands of bodies are found one by one; on only with other solvers than conjugate gradients, where it makes no difference.";
-        check "autoreset" | "energy" | "fwdinv" | "invdiscrete", Kind::Word(SWITCH.names), "What changes no motion. Ignored: pairs of geoms are found in one way, and a simulation that diverges is an error.";
+        "autoreset" autoreset: bool = true, SWITCH, "Whether MuJoCo starts anew where a simulation diverges, which is an error here. For programs.";
+        "energy" energy: bool = false, SWITCH, "Whether MuJoCo computes energies in every step. For programs: it changes no motion.";
+        "fwdinv" fwdinv: bool = false, SWITCH, "Whether MuJoCo compares forward and inverse dynamics. For programs: it changes no motion.";
+        "invdiscrete" invdiscrete: bool = false, SWITCH, "Whether MuJoCo's inverse dynamics are those of its integrator. For programs: it changes no motion.";
         check "override", Kind::Word(&["disable"]), "Whether all contacts have the parameters of `<option>`; only off.";
     }
 }
@@ -176,12 +184,12 @@ table! {
         "nuser_tendon" nuser_tendon: Option<usize> = None, Kind::UserCount, "Length of `user` of tendons; -1 for the longest given.";
         "nuser_actuator" nuser_actuator: Option<usize> = None, Kind::UserCount, "Length of `user` of actuators; -1 for the longest given.";
         "nuser_sensor" nuser_sensor: Option<usize> = None, Kind::UserCount, "Length of `user` of sensors; -1 for the longest given.";
+        "nuserdata" nuserdata: usize = 0, int(0, MAX_USERDATA), "Length of `userdata` of a simulation, which only programs use.";
+        "njmax" njmax: Option<i64> = None, int(-1, i64::MAX), "Memory of MuJoCo. Ignored.";
+        "nstack" nstack: Option<i64> = None, int(-1, i64::MAX), "Memory of MuJoCo. Ignored.";
+        "memory" memory: Option<String> = None, Kind::Memory, "Memory of MuJoCo. Ignored.";
         "nkey" nkey: usize = 0, int(0, MAX_KEYS), "Least number of keyframes; those that are not given hold the reference configuration.";
-        check "nuserdata", int(0, MAX_COUNT), "Length of `userdata` of a simulation, which only programs use. Ignored.";
         check "nconmax", int(-1, i64::MAX), "Memory of MuJoCo. Ignored.";
-        check "njmax", int(-1, i64::MAX), "Memory of MuJoCo. Ignored.";
-        check "nstack", int(-1, i64::MAX), "Memory of MuJoCo. Ignored.";
-        check "memory", TEXT, "Memory of MuJoCo. Ignored.";
     }
 }
 
@@ -251,6 +259,24 @@ table! {
         "meansize" meansize: f64 = 0.0, real(Positive), "Mean size of the bodies, m.";
         "extent" extent: f64 = 0.0, real(Positive), "Extent of the model, m.";
         "center" center: Vec3 = [f64::NAN; 3], reals(3, Any), "Centre of the model, m; NaN means computed.";
+    }
+}
+
+const TWO_MEMORIES: &str = "memory and njmax or nstack are two ways to say the same: give one of them";
+
+impl Size {
+    /// Reads a section; those behind it win.
+    ///
+    /// # Errors
+    /// It says in two ways how much memory MuJoCo takes.
+    pub fn section(&mut self, e: &Element) -> Result<(), &'static str> {
+        (self.njmax, self.nstack) = (None, None);
+        self.apply(e);
+        let memory = self.memory.as_deref().is_some_and(|memory| memory.trim_ascii() != "-1");
+        if memory && (self.njmax.is_some() || self.nstack.is_some()) {
+            return Err(TWO_MEMORIES);
+        }
+        Ok(())
     }
 }
 

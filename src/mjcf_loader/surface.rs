@@ -33,6 +33,7 @@ table! {
         "gridlayout" gridlayout: Option<String> = None, TEXT, "What each square of the image is, row by row: `R`, `L`, `U`, `D`, `F`, `B` for the right, left, upper, lower, front and back face, `.` for none.";
         "hflip" hflip: bool = false, FLAG, "Whether images are mirrored from left to right.";
         "vflip" vflip: bool = false, FLAG, "Whether images are mirrored from top to bottom.";
+        "content_type" content_type: Option<String> = None, TEXT, "Format of the images, whatever the endings of their names: `image/png`.";
         "nchannel" channels: i32 = 3, int(i32::MIN as i64, i32::MAX as i64), "Numbers of a pixel: red, green and blue, and with 4 the opacity, too, as flat images from files and patterns on cubes may have it.";
     }
 }

@@ -11,8 +11,11 @@ pub(super) const SOLREF: [f64; 2] = [0.02, 1.0];
 pub(super) const SOLIMP: [f64; 5] = [0.9, 0.95, 0.001, 0.5, 2.0];
 pub(super) const GREY: [f64; 4] = [0.5, 0.5, 0.5, 1.0];
 
-pub(super) const MAX_GROUP: i64 = 5;
-pub(super) const MAX_BITS: i64 = u32::MAX as i64;
+/// Groups from 5 on are drawn, and seen by rays, alike.
+pub(super) const MAX_GROUP: i64 = i32::MAX as i64;
+/// Bits of collision, the highest of which is the sign.
+pub(super) const MIN_BITS: i64 = i32::MIN as i64;
+pub(super) const MAX_BITS: i64 = i32::MAX as i64;
 /// The greatest number of keyframes that a document may ask for without giving them.
 pub(super) const MAX_KEYS: i64 = 10_000;
 pub(super) const MAX_COUNT: i64 = 1 << 30;

@@ -3,6 +3,7 @@
 
 mod parser;
 
+use std::borrow::Cow;
 use std::collections::BTreeSet;
 
 use super::error::{ErrorKind, LoadError, Place};
@@ -25,6 +26,8 @@ pub struct Node {
     line: usize,
     column: usize,
     parent: Option<usize>,
+    /// Whether there are comments or text in it.
+    filled: bool,
 }
 
 impl Node {
@@ -218,6 +221,28 @@ fn indent(out: &mut String, depth: usize) {
     out.extend(std::iter::repeat_n("  ", depth));
 }
 
+/// Returns the text of a file: UTF-8, or Latin-1 where it says so.
+pub(super) fn text_of(bytes: &[u8]) -> Result<Cow<'_, str>, ErrorKind> {
+    if let Ok(text) = std::str::from_utf8(bytes) {
+        return Ok(text.into());
+    }
+    let declaration: Vec<u8> = bytes
+        .iter()
+        .take(100)
+        .take_while(|byte| **byte != b'>')
+        .copied()
+        .collect();
+    let declaration = String::from_utf8_lossy(&declaration).to_ascii_lowercase();
+    let latin = ["iso-8859-1", "latin1", "latin-1"]
+        .iter()
+        .any(|name| declaration.contains(name));
+    if declaration.starts_with("<?xml") && latin {
+        Ok(bytes.iter().copied().map(char::from).collect())
+    } else {
+        Err(ErrorKind::NotUtf8)
+    }
+}
+
 struct Reading<'s> {
     tree: Tree,
     source: &'s dyn AssetSource,
@@ -289,8 +314,8 @@ impl Reading<'_> {
             return Err(self.tree.error(at, ErrorKind::TooMuch { what, limit }));
         }
         let bytes = self.source.read(&path).map_err(|e| self.tree.error(at, e))?;
-        let text = std::str::from_utf8(&bytes).map_err(|_| LoadError::in_file(&path, ErrorKind::NotUtf8))?;
-        self.model(text, &path, Some(at)).map(|_| ())
+        let text = text_of(&bytes).map_err(|kind| LoadError::in_file(&path, kind))?;
+        self.model(&text, &path, Some(at)).map(|_| ())
     }
 
     /// Parses one file and splices its includes. `depth` is the nesting depth of the element it stands for.
@@ -342,6 +367,10 @@ impl Reading<'_> {
             let name = self.tree.nodes[child].name.clone();
             return Err(self.tree.error(child, ErrorKind::UnknownElement(name)));
         }
+        if node.filled {
+            let what = "an include is empty: put comments before it";
+            return fail(ErrorKind::Invalid(what));
+        }
         if let Some((name, _)) = node.attributes.iter().find(|(name, _)| name != "file") {
             return fail(ErrorKind::UnknownAttribute(name.clone()));
         }
@@ -359,9 +388,9 @@ impl Reading<'_> {
             return fail(ErrorKind::RepeatedInclude(path));
         }
         let bytes = self.source.read(&path).map_err(|e| self.tree.error(at, e))?;
-        let text = std::str::from_utf8(&bytes).map_err(|_| LoadError::in_file(&path, ErrorKind::NotUtf8))?;
+        let text = text_of(&bytes).map_err(|kind| LoadError::in_file(&path, kind))?;
         self.included.insert(path.clone());
-        let root = self.file(text, &path, depth, level)?;
+        let root = self.file(&text, &path, depth, level)?;
         // The root of an included file only holds its children; what else it says would be lost.
         match self.tree.nodes[root]
             .attributes
@@ -369,6 +398,10 @@ impl Reading<'_> {
             .find(|(name, _)| name != "model")
         {
             Some((name, _)) => Err(self.tree.error(root, ErrorKind::UnknownAttribute(name.clone()))),
+            None if self.tree.nodes[root].children.is_empty() => {
+                let what = "the included file has no elements: remove the include";
+                Err(self.tree.error(at, ErrorKind::Invalid(what)))
+            }
             None => Ok(root),
         }
     }

@@ -66,6 +66,8 @@ arrays! {
     na: usize,
     /// Number of mocap bodies, which a program moves.
     nmocap: usize,
+    /// Length of `userdata` of a simulation (`nuserdata`), numbers that only programs read and write.
+    nuserdata: usize,
 
     /// Names of the bodies (nbody), "world" first; may be empty. MuJoCo's `name_bodyadr`.
     body_name: Vec<String>,
@@ -277,6 +279,8 @@ arrays! {
     cam_poscom0: Vec<Vec3>,
     /// Orientation of each camera at `qpos0` (ncam, 9), world frame, rotation matrix row by row.
     cam_mat0: Vec<Mat3>,
+    /// Whether the rays of each camera are parallel (`cam_orthographic`, ncam). Its `cam_fovy` is then the height of the picture, m.
+    cam_orthographic: Vec<bool>,
     /// Width and height of each camera's picture for sensors (ncam, 2), pixels.
     cam_resolution: Vec<[usize; 2]>,
     /// Vertical field of view of each camera (ncam), degrees.

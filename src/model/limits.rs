@@ -47,15 +47,15 @@ limits! {
         /// MJCF: attributes of an element.
         attributes: usize = 64,
         /// MJCF: levels of nested elements, across includes. A level takes up to 3 KiB of stack without optimisation.
-        depth: usize = 100,
+        depth: usize = 500,
         /// MJCF: levels of nested includes, and of models within models. A level takes up to 2 KiB of stack without optimisation.
         include_depth: usize = 16,
         /// MJCF: bytes of a name or any other attribute that is text. Default classes copy them.
-        text_bytes: usize = 256,
+        text_bytes: usize = 1024,
         /// MJCF: default classes.
-        classes: usize = 1000,
+        classes: usize = 5000,
         /// MJCF: user values of an element. Default classes copy them.
-        user: usize = 64,
+        user: usize = 256,
         /// MJCF: bodies, the world among them.
         bodies: usize = 20_000,
         /// MJCF: geoms.

@@ -127,6 +127,8 @@ pub struct Light {
     pub directional: bool,
     /// Whether it casts shadows.
     pub castshadow: bool,
+    /// Whether it is on (`light_active`); pictures leave out lights that are off.
+    pub active: bool,
     /// Position in the body, m.
     pub pos: Vec3,
     /// Unit direction in the body.

@@ -5,12 +5,14 @@
 //! bits on every target. Trigonometry comes from `pxfm`, which rounds
 //! correctly, for the same reason; small angles of joints have a shorter way to the same bits (`sincos`).
 
+mod axes;
 pub mod hull;
 mod operations;
 pub mod order;
 pub mod qhull;
 mod sincos;
 
+pub use axes::*;
 pub use operations::*;
 
 /// A 3-vector.

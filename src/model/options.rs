@@ -160,6 +160,14 @@ pub struct Flags {
     pub multiccd: bool,
     /// Islands of bodies found one by one; off by default. Models in which it could be seen are refused: those with conjugate gradients.
     pub island: bool,
+    /// Start anew where a simulation diverges; on by default. It changes no motion here: a simulation that diverges is an error.
+    pub autoreset: bool,
+    /// Energies in every step; off by default. It changes no motion.
+    pub energy: bool,
+    /// Comparison of forward and inverse dynamics; off by default. It changes no motion.
+    pub fwdinv: bool,
+    /// Inverse dynamics of the integrator; off by default. It changes no motion.
+    pub invdiscrete: bool,
 }
 
 /// The statistics of a model (`<statistic>`), given or computed.

@@ -112,6 +112,14 @@ pub enum RenderError {
         /// Camera asked for, by id.
         camera: usize,
     },
+    /// The rays of the camera are parallel.
+    #[error(
+        "pictures are drawn in perspective: camera {camera} is orthographic; leave that out, and put it further away with a smaller fovy"
+    )]
+    Orthographic {
+        /// Camera asked for, by id.
+        camera: usize,
+    },
     /// The free camera has no pose.
     #[error("the free camera has no finite pose: give Poses::free finite numbers")]
     FreeCamera,

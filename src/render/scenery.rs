@@ -88,6 +88,8 @@ pub struct Camera {
     pub half_width: Option<f64>,
     /// Whether the axis of its lens meets the middle of its sensor: others are not drawn.
     pub centred: bool,
+    /// Whether its rays are parallel: such cameras are not drawn.
+    pub orthographic: bool,
 }
 
 impl Camera {
@@ -98,6 +100,7 @@ impl Camera {
             fovy: model.cam_fovy[camera],
             half_width: sensor.then(|| 0.5 * wide / focal),
             centred: !sensor || x == 0.0 && y == 0.0,
+            orthographic: model.cam_orthographic[camera],
         }
     }
 }
@@ -259,6 +262,8 @@ impl Scenery {
             });
         } else if !self.cameras[camera].centred {
             return Err(RenderError::OffCentre { camera });
+        } else if self.cameras[camera].orthographic {
+            return Err(RenderError::Orthographic { camera });
         }
         view.check()?;
         let [geoms, sites, bodies, tendons, points] = self.sizes;
@@ -400,7 +405,13 @@ fn lights(model: &Model) -> (Option<[[f32; 3]; 3]>, Vec<LightSource>) {
     let room = MAX_LIGHTS - usize::from(headlight.is_some());
     (
         headlight,
-        model.lights.iter().take(room).map(LightSource::new).collect(),
+        model
+            .lights
+            .iter()
+            .filter(|light| light.active)
+            .take(room)
+            .map(LightSource::new)
+            .collect(),
     )
 }
 

@@ -79,10 +79,6 @@ fn what_cannot_be_attached_is_an_error() {
             r#"attribute "prefix" is required"#,
         ),
         (
-            r#"<replicate count="2"><attach model="arm" body="arm" prefix=""/></replicate>"#,
-            "mixes up",
-        ),
-        (
             r#"<attach model="arm" body="arm" prefix="a"/><attach model="arm" body="other" prefix="a"/>"#,
             "may take for it",
         ),

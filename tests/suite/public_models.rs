@@ -64,7 +64,7 @@ fn pictures_are_as_wide_as_the_sensor_sees() {
     let sensor = r#"sensorsize="2 2" resolution="64 64""#;
     let mut engine = engine(&format!(
         r#"<mujoco><worldbody><geom size=".5" pos="0 0 -3"/><camera fovy="90"/><camera {sensor} focal="1 1"/>
-           <camera {sensor} focal="2 1"/><camera {sensor} focal="1 1" principal="0 .1"/></worldbody></mujoco>"#
+           <camera {sensor} focal="2 1"/><camera {sensor} focal="1 1" principal="0 .1"/><camera orthographic="true"/></worldbody></mujoco>"#
     ));
     let mut state = engine.new_state();
     engine.forward(&mut state).expect("finite");
@@ -88,6 +88,7 @@ fn pictures_are_as_wide_as_the_sensor_sees() {
     let (wide, high) = sides(2).expect("drawn");
     assert!(wide.abs_diff(2 * row) <= 2 && high == column, "{wide} {high}");
     assert!(matches!(sides(3), Err(RenderError::OffCentre { camera: 3 })));
+    assert!(matches!(sides(4), Err(RenderError::Orthographic { camera: 4 })));
 }
 
 #[test]

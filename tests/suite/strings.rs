@@ -271,27 +271,30 @@ fn engine_of_copies(count: i32) -> SoftEngine {
 }
 
 #[test]
-fn what_mujoco_multiplies_with_copies_is_refused() {
+fn what_refers_to_what_is_copied_is_copied() {
+    let model = |text: &str| compile(outcome(text).expect(text)).expect(text);
     let copies = "<worldbody><replicate count='2'><geom size='.1'/></replicate></worldbody>";
-    for beside in ["<sensor><clock/></sensor>", "<keyframe><key time='1'/></keyframe>"] {
-        let error = outcome(&format!("<mujoco>{copies}{beside}</mujoco>")).expect_err(beside);
-        assert!(error.contains("MuJoCo 3.3.0 multiplies it with every copy"), "{error}");
-    }
+    // what refers to nothing is copied with every copy, and so are its own copies
+    let clocks = model(&format!("<mujoco>{copies}<sensor><clock name='c'/></sensor></mujoco>"));
+    assert_eq!(clocks.sensor_name, ["c", "c0", "c1", "c01"]);
+    let keys = model(&format!(
+        "<mujoco>{copies}<keyframe><key name='k'/></keyframe></mujoco>"
+    ));
+    let names: Vec<_> = keys.keys.iter().map(|key| key.name.as_str()).collect();
+    assert_eq!(names, ["k0", "k1", "k"]);
     let slides = "<body><joint name='x'/><geom size='.1'/></body><body><joint name='x0'/><geom size='.1'/></body>";
     let copies = "<replicate count='2'><body><joint name='y'/><geom size='.1'/></body></replicate>";
     let with = |joint: &str| {
-        let motor = format!("<actuator><motor joint='{joint}'/></actuator>");
-        outcome(&format!(
+        let motor = format!("<actuator><motor name='m' joint='{joint}'/></actuator>");
+        model(&format!(
             "<mujoco><worldbody>{slides}{copies}</worldbody>{motor}</mujoco>"
         ))
+        .actuator_name
+        .clone()
     };
-    let error = with("x").expect_err("multiplied");
-    assert!(
-        error.contains(r#"multiplies what refers to the joint "x" with every copy"#),
-        "{error}"
-    );
-    assert!(error.contains("rename one of them"), "{error}");
-    for joint in ["x0", "y0", "y1"] {
-        with(joint).unwrap_or_else(|e| panic!("{joint}: {e}"));
-    }
+    // also where something else is called as a copy would be
+    assert_eq!(with("x"), ["m", "m0"]);
+    assert_eq!(with("x0"), ["m"]);
+    assert_eq!(with("y1"), ["m"]);
+    assert_eq!(with("y"), ["m0", "m1"]);
 }

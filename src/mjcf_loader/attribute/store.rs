@@ -107,7 +107,22 @@ macro_rules! store_whole {
         }
     )*};
 }
-store_whole!(usize, u32, i32);
+store_whole!(usize, i32, i64);
+
+/// Bits, which documents write as whole numbers whose sign is the highest of them.
+impl Store for u32 {
+    fn store(&mut self, value: &Value) {
+        if let Value::Int(value) = value
+            && let Ok(value) = i32::try_from(*value)
+        {
+            *self = value.cast_unsigned();
+        }
+    }
+
+    fn show(&self) -> String {
+        self.cast_signed().to_string()
+    }
+}
 
 /// A value that need not be given. A negative count, which the tables allow as -1, counts as not given.
 macro_rules! store_optional {
@@ -127,4 +142,4 @@ macro_rules! store_optional {
         }
     )*};
 }
-store_optional!([] String = String::new(), [] f64 = 0.0, [] usize = 0, [const N: usize] [f64; N] = [0.0; N]);
+store_optional!([] String = String::new(), [] f64 = 0.0, [] usize = 0, [] i64 = 0, [const N: usize] [f64; N] = [0.0; N]);

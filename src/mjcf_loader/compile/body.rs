@@ -7,9 +7,10 @@ use super::fuse::{Place, places};
 use super::geom::{check_size, compile_geom, place};
 use super::geometry::{Solid, merge, orientation, principal};
 use super::joint::compile_joints;
+use crate::math::{MINVAL, Quat, Vec3, add, mat_vec, quat_to_mat};
 use crate::document::{Body, BodyFrame, Copied, Document, Frame, Geom, Orientation, Site, Tri};
 use crate::error::LoadError;
-use crate::math::{MINVAL, QUAT_ID, Quat, Vec3, add, quat_rotate};
+use crate::settings::single;
 use crate::model::Arrays;
 use crate::settings::single;
 
@@ -227,9 +228,6 @@ fn inertial(context: &Context, body: &Body, own: usize, solids: &[Solid]) -> Res
             solid.quat = quat_of(context, given.at, &given.frame)?;
             (solid.mass, solid.inertia) = (given.mass, given.diaginertia);
             if let Some(full) = &given.fullinertia {
-                if !matches!(given.frame.orientation, Orientation::Quat(QUAT_ID)) {
-                    return Err(context.invalid(given.at, "fullinertia and an orientation are mutually exclusive"));
-                }
                 (solid.quat, solid.inertia) = principal(full).map_err(|m| context.invalid(given.at, m))?;
             }
         }
@@ -328,7 +326,7 @@ pub(super) fn copied(
     let pos = match copy.previous {
         Some(previous) => add(
             own[previous],
-            quat_rotate(turned(copy.number.saturating_sub(2))?, frame.frame.pos),
+            mat_vec(&quat_to_mat(turned(copy.number.saturating_sub(2))?), frame.frame.pos),
         ),
         None => [0.0; 3],
     };

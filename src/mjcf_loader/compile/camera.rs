@@ -30,6 +30,7 @@ pub(super) fn compile_camera(
     let (pos, quat) = context.placed(camera.within, camera.frame.pos, quat);
     arrays.cam_pos.push(pos);
     arrays.cam_quat.push(quat);
+    arrays.cam_orthographic.push(camera.orthographic);
     arrays.cam_resolution.push(camera.resolution.map(|v| v as usize));
     let (fovy, intrinsic) = optics(context, camera, arrays.vis.znear)?;
     arrays.cam_fovy.push(fovy);
@@ -55,6 +56,7 @@ pub(super) fn compile_light(
         bodyid: body,
         directional: light.directional,
         castshadow: light.castshadow,
+        active: light.active,
         pos: context.point(light.within, light.pos),
         dir: context.direction(light.within, dir),
         mode: light.mode,

@@ -1,12 +1,14 @@
 //! Shared by the stages of compilation: names, their ids, errors with places.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 
+use crate::math::{Quat, Vec3, add, mat_vec, quat_mul, quat_rotate, quat_to_mat};
 use crate::compile::hfield::hfield_name;
 use crate::compile::mesh::mesh_name;
 use crate::document::{Compiler, Document, Tri};
 use crate::error::{ErrorKind, LoadError};
-use crate::math::{Quat, Vec3, add, order, quat_mul, quat_rotate};
+use crate::surface::Texture;
+use crate::xml::Tree;
 use crate::model::{Arrays, JointType};
 use crate::surface::Texture;
 use crate::xml::Tree;
@@ -15,8 +17,6 @@ use crate::xml::Tree;
 pub(super) struct Names {
     kind: &'static str,
     ids: BTreeMap<String, usize>,
-    /// Names to which a `<replicate>` could add to make others of these.
-    twins: BTreeSet<String>,
 }
 
 impl Names {
@@ -38,24 +38,7 @@ impl Names {
                 ));
             }
         }
-        let twins = BTreeSet::new();
-        Ok(Names { kind, ids, twins })
-    }
-
-    /// Looks for names that are others of these with one of `suffixes` behind.
-    fn apart(mut self, suffixes: &BTreeSet<String>) -> Names {
-        let lengths = order::set(suffixes.iter().map(String::len));
-        for name in self.ids.keys() {
-            for length in lengths.iter().take_while(|length| **length < name.len()) {
-                let parts = name.split_at_checked(name.len() - length);
-                if let Some((front, _)) =
-                    parts.filter(|(front, end)| suffixes.contains(*end) && self.ids.contains_key(*front))
-                {
-                    self.twins.insert(front.to_owned());
-                }
-            }
-        }
-        self
+        Ok(Names { kind, ids })
     }
 
     /// Returns the id of the element that a reference names.
@@ -63,7 +46,6 @@ impl Names {
         let wrong = |kind| Err(tree.error(at, kind));
         let (kind, owned) = (self.kind, || name.to_owned());
         match self.ids.get(name) {
-            Some(_) if self.twins.contains(name) => wrong(ErrorKind::Twin { kind, name: owned() }),
             Some(id) => Ok(*id),
             None => wrong(ErrorKind::UnknownName {
                 attribute,
@@ -122,7 +104,11 @@ impl Context<'_> {
     pub fn point(&self, within: Option<usize>, point: Vec3) -> Vec3 {
         match within {
             None => point,
-            Some(frame) => add(self.frames[frame].0, self.direction(within, point)),
+            // by the matrix, not the quaternion, as in MuJoCo: the last bits decide whether a box touches the floor that it stands on
+            Some(frame) => {
+                let (pos, quat) = self.frames[frame];
+                add(pos, mat_vec(&quat_to_mat(quat), point))
+            }
         }
     }
 
@@ -273,24 +259,15 @@ impl Ids {
             .collect::<Result<Vec<_>, _>>()?;
         let meshes = document.meshes.iter().zip(&mesh_names).map(|(m, name)| (m.at, name));
         let textures = textures.iter().zip(&arrays.textures).map(|(t, m)| (t.at, &m.name));
-        let apart = |names: Result<Names, LoadError>| names.map(|names| names.apart(&document.suffixes));
         Ok(Ids {
-            body: apart(Names::new(tree, "body", bodies.iter().map(|b| (b.at, &b.name))))?,
-            joint: apart(Names::new(tree, "joint", joints))?,
-            geom: apart(Names::new(tree, "geom", geoms))?,
-            site: apart(Names::new(tree, "site", sites))?,
+            body: Names::new(tree, "body", bodies.iter().map(|b| (b.at, &b.name)))?,
+            joint: Names::new(tree, "joint", joints)?,
+            geom: Names::new(tree, "geom", geoms)?,
+            site: Names::new(tree, "site", sites)?,
             texture: Names::new(tree, "texture", textures)?,
-            camera: apart(Names::new(tree, "camera", cameras))?,
-            tendon: apart(Names::new(
-                tree,
-                "tendon",
-                document.tendons.iter().map(|t| (t.at, &t.name)),
-            ))?,
-            actuator: apart(Names::new(
-                tree,
-                "actuator",
-                document.actuators.iter().map(|a| (a.at, &a.name)),
-            ))?,
+            camera: Names::new(tree, "camera", cameras)?,
+            tendon: Names::new(tree, "tendon", document.tendons.iter().map(|t| (t.at, &t.name)))?,
+            actuator: Names::new(tree, "actuator", document.actuators.iter().map(|a| (a.at, &a.name)))?,
             hfield: Names::new(tree, "hfield", hfields)?,
             mesh: Names::new(tree, "mesh", meshes)?,
             material: Names::new(tree, "material", document.materials.iter().map(|m| (m.at, &m.name)))?,
@@ -329,6 +306,7 @@ fn check_unreferenced(tree: &Tree, document: &Document) -> Result<(), LoadError>
     Names::new(tree, "numeric", document.numerics.iter().map(|n| (n.at, &n.name)))?;
     Names::new(tree, "text", document.texts.iter().map(|t| (t.at, &t.name)))?;
     Names::new(tree, "frame", document.frames.iter().map(|f| (f.at, &f.name)))?;
-    Names::new(tree, "key", document.keys.iter().map(|k| (k.at, &k.name)))?;
+    let moved = document.moved_keys.iter().map(|k| (k.at, &k.name));
+    Names::new(tree, "key", document.keys.iter().map(|k| (k.at, &k.name)).chain(moved))?;
     Ok(())
 }

@@ -7,6 +7,11 @@ use crate::custom::{Key, Named, TupleElement};
 use crate::document::Document;
 use crate::error::{ErrorKind, LoadError};
 use crate::math::{Quat, Vec3, quat_at, quat_normalize};
+use crate::attached::MovedKey;
+use crate::custom::{Key, Named, TupleElement};
+use crate::document::Document;
+use crate::error::{ErrorKind, LoadError};
+use crate::table::Table;
 use crate::model::{Arrays, Keyframe};
 use crate::table::Table;
 
@@ -74,10 +79,7 @@ pub(super) fn compile_keys(context: &Context, document: &Document, arrays: &mut 
     let numbers = arrays.nq + arrays.nv + arrays.na + arrays.nu() + 7 * arrays.nmocap;
     let (limit, most) = (
         context.tree.limits.key_numbers,
-        document
-            .size
-            .nkey
-            .max(document.keys.len() + document.attached_keys.len()),
+        document.size.nkey.max(document.keys.len()) + document.moved_keys.len(),
     );
     if most.saturating_mul(numbers) > limit {
         let at = document.keys.last().map_or(0, |key| key.at);
@@ -86,10 +88,6 @@ pub(super) fn compile_keys(context: &Context, document: &Document, arrays: &mut 
     }
     for key in &document.keys {
         let key = compile_key(context, key, arrays)?;
-        arrays.keys.push(key);
-    }
-    for key in &document.attached_keys {
-        let key = attached_key(context, key, arrays)?;
         arrays.keys.push(key);
     }
     let reference = Keyframe {
@@ -103,12 +101,23 @@ pub(super) fn compile_keys(context: &Context, document: &Document, arrays: &mut 
         mquat: mocap_poses(arrays).map(|pose| pose.1).collect(),
     };
     let missing = document.size.nkey.saturating_sub(arrays.keys.len());
-    arrays.keys.extend(std::iter::repeat_n(reference, missing));
+    arrays.keys.extend(std::iter::repeat_n(reference.clone(), missing));
+    let last_unnamed = document.moved_keys.iter().rposition(|key| key.name.is_empty());
+    for (at, key) in document.moved_keys.iter().enumerate() {
+        // of those without a name MuJoCo fills only the last
+        let filled = !key.name.is_empty() || last_unnamed == Some(at);
+        let key = if filled {
+            moved_key(context, key, document, arrays)?
+        } else {
+            reference.clone()
+        };
+        arrays.keys.push(key);
+    }
     Ok(())
 }
 
-/// Compiles a keyframe of another model: what it does not say of all that came along is as in `qpos0`.
-fn attached_key(context: &Context, key: &AttachedKey, arrays: &Arrays) -> Result<Keyframe, LoadError> {
+/// Compiles a keyframe that came along with bodies or copies: what it does not say is as in `qpos0`.
+fn moved_key(context: &Context, key: &MovedKey, document: &Document, arrays: &Arrays) -> Result<Keyframe, LoadError> {
     let mut whole = Key {
         at: key.at,
         name: key.name.clone(),
@@ -123,19 +132,29 @@ fn attached_key(context: &Context, key: &AttachedKey, arrays: &Arrays) -> Result
         whole.mpos.extend(pos);
         whole.mquat.extend(quat);
     }
-    for KeyPart { of, values } in &key.parts {
-        let joint_id = |body: usize, joint: usize| arrays.body_jntadr[body] + joint;
-        let mocap = |body: usize| arrays.body_mocapid[body].unwrap_or(0);
-        let (to, from) = match *of {
-            Keyed::Qpos { body, joint } => (&mut whole.qpos, arrays.jnt_qposadr[joint_id(body, joint)]),
-            Keyed::Qvel { body, joint } => (&mut whole.qvel, arrays.jnt_dofadr[joint_id(body, joint)]),
-            Keyed::Act(actuator) => (&mut whole.act, arrays.actuator_actadr[actuator].unwrap_or(0)),
-            Keyed::Ctrl(actuator) => (&mut whole.ctrl, actuator),
-            Keyed::Mpos(body) => (&mut whole.mpos, 3 * mocap(body)),
-            Keyed::Mquat(body) => (&mut whole.mquat, 4 * mocap(body)),
-        };
-        let places = to.iter_mut().skip(from);
+    let write = |to: &mut [f64], at: usize, values: &[f64]| {
+        let places = to.iter_mut().skip(at);
         places.zip(values).for_each(|(to, value)| *to = *value);
+    };
+    let joints = document.bodies.iter().flat_map(|body| &body.joints);
+    for (id, joint) in joints.enumerate() {
+        if let Some([qpos, qvel]) = joint.states.get(&key.name) {
+            write(&mut whole.qpos, arrays.jnt_qposadr[id], qpos);
+            write(&mut whole.qvel, arrays.jnt_dofadr[id], qvel);
+        }
+    }
+    for (id, actuator) in document.actuators.iter().enumerate() {
+        if let Some([act, ctrl]) = actuator.states.get(&key.name) {
+            write(&mut whole.act, arrays.actuator_actadr[id].unwrap_or(0), act);
+            write(&mut whole.ctrl, id, ctrl);
+        }
+    }
+    let moved = document.bodies.iter().filter(|body| body.mocap);
+    for (id, body) in moved.enumerate() {
+        if let Some([mpos, mquat]) = body.states.get(&key.name) {
+            write(&mut whole.mpos, 3 * id, mpos);
+            write(&mut whole.mquat, 4 * id, mquat);
+        }
     }
     compile_key(context, &whole, arrays)
 }

@@ -226,7 +226,9 @@ fn place_mesh(
     } else {
         let fitted = fit(geom.kind, mesh, context.compiler(geom.at).fitaabb, geom.fitscale)
             .ok_or_else(|| context.invalid(geom.at, "a plane cannot be fitted to a mesh"))?;
-        *size = fitted.size;
+        // what the shape does not use stays
+        let used = size_count(geom.kind);
+        size[..used].copy_from_slice(&fitted.size[..used]);
         // MuJoCo moves the mesh itself, for all geoms that follow
         mesh.pos = fitted.pos;
     }

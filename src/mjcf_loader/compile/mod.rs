@@ -45,6 +45,7 @@ pub(super) fn compile(
     let (name, opt) = (document.model.clone(), document.option.clone());
     let (vis, stat) = (document.visual.clone(), document.statistic.clone());
     let mut arrays = Arrays::without_elements(name, opt, vis, stat);
+    arrays.nuserdata = document.size.nuserdata;
     let mut context = Context {
         tree,
         compilers: &document.compilers,

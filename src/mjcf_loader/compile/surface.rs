@@ -2,36 +2,48 @@
 
 use super::context::{Context, Ids};
 use crate::assets::{AssetError, AssetSource};
+use crate::formats::png::check_png;
 use crate::error::{ErrorKind, LoadError};
+use crate::settings::single;
+use crate::surface;
 use crate::model::{self, Builtin, TextureType};
 use crate::settings::single;
 use crate::surface;
 
-/// Compiles a texture. Its images are looked up in `source`, and not decoded.
+/// Compiles a texture. Its images are looked up in `source` and checked, and not decoded.
 pub(super) fn compile_texture(
     context: &Context,
     texture: &surface::Texture,
     source: &dyn AssetSource,
 ) -> Result<model::Texture, LoadError> {
-    let path = |file: &String| asset_path(context, texture.at, file, [context.texturedir(texture.at); 2], source);
-    let mut cube_files = [const { None }; 6];
-    for (to, from) in cube_files.iter_mut().zip(&texture.cube_files) {
-        *to = from.as_ref().map(path).transpose()?;
-    }
-    let file = texture.file.as_ref().map(path).transpose()?;
     // the faces of a builtin cube are as high as wide
     let flat = texture.kind == TextureType::Flat2d;
     let builtin = texture.builtin != Builtin::None;
     let invalid = |message| Err(context.invalid(texture.at, message));
+    let path = |file: &String| asset_path(context, texture.at, file, [context.texturedir(texture.at); 2], source);
+    // a pattern has no images, whatever is named
+    let named = |file: &Option<String>| file.as_ref().filter(|_| !builtin).map(path).transpose();
+    let mut cube_files = [const { None }; 6];
+    for (to, from) in cube_files.iter_mut().zip(&texture.cube_files) {
+        *to = named(from)?;
+    }
+    let file = named(&texture.file)?;
     if !builtin {
         if file.is_none() && cube_files.iter().all(Option::is_none) {
             return invalid("the texture has neither a builtin nor a file");
         }
     } else if texture.width == 0 || flat && texture.height == 0 {
         return invalid("a builtin texture needs a width, and if it is flat a height");
+    } else if texture.width * height(texture) >= MOST_NUMBERS / 3 {
+        return invalid("the pattern has more numbers than MuJoCo counts: make it smaller");
     }
     let channels = channels(texture).map_err(|message| context.invalid(texture.at, message))?;
-    let (gridsize, gridlayout) = grid(context, texture)?;
+    let (gridsize, gridlayout) = if builtin {
+        ([1; 2], Vec::new())
+    } else {
+        grid(context, texture)?
+    };
+    check_images(context, texture, (&file, &cube_files), gridsize, source)?;
     Ok(model::Texture {
         name: texture_name(context, texture)?,
         kind: texture.kind,
@@ -42,11 +54,7 @@ pub(super) fn compile_texture(
         markrgb: texture.markrgb,
         random: texture.random,
         width: texture.width,
-        height: if builtin && !flat {
-            6 * texture.width
-        } else {
-            texture.height
-        },
+        height: if builtin { height(texture) } else { texture.height },
         file,
         gridsize,
         gridlayout,
@@ -55,6 +63,81 @@ pub(super) fn compile_texture(
         cube_files,
     })
 }
+
+/// Returns the height of a pattern, pixels: of a cube it has the six faces.
+fn height(texture: &surface::Texture) -> usize {
+    match texture.kind {
+        TextureType::Flat2d => texture.height,
+        TextureType::Cube | TextureType::Skybox => 6 * texture.width,
+    }
+}
+
+/// The most numbers of a texture in MuJoCo.
+const MOST_NUMBERS: usize = i32::MAX as usize;
+
+/// Checks the images of a texture, so that it can be drawn: their format, and their sizes where it is a cube.
+fn check_images(
+    context: &Context,
+    texture: &surface::Texture,
+    (file, cube_files): (&Option<String>, &[Option<String>; 6]),
+    [rows, columns]: [usize; 2],
+    source: &dyn AssetSource,
+) -> Result<(), LoadError> {
+    let cube = texture.kind != TextureType::Flat2d;
+    let fault = |path: &str, message: String| {
+        let (file, message) = (Some(path.to_owned()), message);
+        Err(context.error(texture.at, ErrorKind::Mesh { file, message }))
+    };
+    let [rows, columns] = [rows, columns].map(|count| u32::try_from(count).unwrap_or(u32::MAX).max(1));
+    let mut side = None;
+    // as in MuJoCo, faces count where there is no single image
+    let faces: &[Option<String>] = if file.is_some() { &[] } else { cube_files.as_slice() };
+    for path in file.iter().chain(faces.iter().flatten()) {
+        let [width, height] = match image_size(context, texture, path, source) {
+            Ok(Some(size)) => size,
+            Ok(None) => continue,
+            Err(message) => return fault(path, message),
+        };
+        let fits = if file.is_some() {
+            width % columns == 0 && height % rows == 0 && width / columns == height / rows
+        } else {
+            width == height && side.is_none_or(|side| side == width)
+        };
+        side = Some(width);
+        if cube && !fits {
+            let what =
+                "the faces of a cube are squares of one size, each a square of gridsize where one image holds them";
+            return fault(path, format!("{width} x {height} pixels: {what}"));
+        }
+    }
+    Ok(())
+}
+
+/// Checks an image; returns its width and height, pixels, where the source has it.
+fn image_size(
+    context: &Context,
+    texture: &surface::Texture,
+    path: &str,
+    source: &dyn AssetSource,
+) -> Result<Option<[u32; 2]>, String> {
+    let png = match texture.content_type.as_deref() {
+        Some(format) => format == "image/png",
+        None => path.to_ascii_lowercase().ends_with(".png"),
+    };
+    if !png {
+        return Err(ONLY_PNG.to_owned());
+    }
+    // programs may leave images out that they do not draw
+    let bytes = source.read(path).unwrap_or_default();
+    if bytes.is_empty() {
+        return Ok(None);
+    }
+    let size = check_png(&bytes, &context.tree.limits).map_err(|message| format!("{message}; {ONLY_PNG}"))?;
+    Ok(Some(size))
+}
+
+const ONLY_PNG: &str =
+    "textures are read from PNG pictures: convert it, and let its name end with .png or content_type be image/png";
 
 /// Returns the numbers of a pixel, where MuJoCo 3.3.0 draws them as what they are.
 fn channels(texture: &surface::Texture) -> Result<usize, &'static str> {

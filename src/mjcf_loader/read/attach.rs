@@ -2,15 +2,15 @@
 
 use std::collections::BTreeSet;
 
-use super::super::attached::{Absent, Amount, Attachable, Referring, Thing, hanging};
+use super::super::attached::{Absent, Amount, Referring, Thing, hanging};
 use super::super::compile::stem;
 use super::super::document::{Attach, Body, Document};
 use super::super::error::{ErrorKind, LoadError};
 use super::super::schema::Element;
 use super::super::table::Table;
 use super::super::xml::Tree;
-use super::attach_keys::{keep_keys, say};
 use super::content::Spot;
+use super::keys::{resize_keys, say_keys};
 use crate::math::order;
 
 const ABSENT: &str = "this refers to something that is not attached, by a name that another element of the document has, which MuJoCo 3.3.0 \
@@ -35,7 +35,6 @@ fn unknown(tree: &Tree, attach: &Attach, kind: &'static str, name: &str) -> Load
 /// The part of a model that an `<attach>` takes.
 pub(super) struct Taking<'a> {
     prefix: &'a str,
-    suffix: &'a str,
     /// The bodies of the model that come along.
     pub bodies: std::ops::Range<usize>,
     /// The names in the model of what comes along.
@@ -52,12 +51,12 @@ impl Taking<'_> {
         }
     }
 
-    /// Changes a name that something refers to, of an asset or of what a `<replicate>` copies.
+    /// Changes a name that something refers to.
     fn refer(&self, name: &mut String) {
-        *name = format!("{}{name}{}", self.prefix, self.suffix);
+        *name = format!("{}{name}", self.prefix);
     }
 
-    /// Changes the name of an asset, which a `<replicate>` does not copy; one without is called after its file.
+    /// Changes the name of an asset; one without is called after its file.
     fn rename_asset(&self, name: &mut String, file: Option<&str>) {
         let whole = stem(name, file);
         if !whole.is_empty() {
@@ -73,14 +72,14 @@ impl Taking<'_> {
 
     /// Tells whether something of the model comes along.
     fn has(&self, thing: Thing, name: &str) -> bool {
-        let world = thing == Thing::Body && name == "world" && self.prefix.is_empty() && self.suffix.is_empty();
+        let world = thing == Thing::Body && name == "world" && self.prefix.is_empty();
         world || self.names.contains(&(thing, name.to_owned()))
     }
 
     /// Changes the names that an element refers to; returns whether it comes along, and otherwise adds to `absent` why not.
     fn admit<T: Referring>(&self, element: &mut T, absent: &mut Vec<Absent>) -> bool {
         let at = element.at();
-        let renamed = !(self.prefix.is_empty() && self.suffix.is_empty());
+        let renamed = !self.prefix.is_empty();
         if let Some((thing, name)) = element.left().filter(|_| renamed) {
             absent.push(Absent { at, thing, name });
             return false;
@@ -123,14 +122,15 @@ impl Taking<'_> {
 
 fn take(
     attach: &Attach,
-    model: &mut Attachable,
+    model: &mut Document,
     spot: Spot,
     tree: &Tree,
     document: &mut Document,
 ) -> Result<(), LoadError> {
     document.copied.add(Amount::of(model), attach.at, tree)?;
-    keep_keys(attach, model, spot, tree, document)?;
-    let bodies = &model.document.bodies;
+    let keys = say_keys(model, (&attach.prefix, ""), tree)?;
+    document.moved_keys.extend(keys);
+    let bodies = &model.bodies;
     let Some(root) = bodies.iter().position(|body| body.name == attach.body) else {
         return Err(unknown(tree, attach, "body", &attach.body));
     };
@@ -138,7 +138,6 @@ fn take(
     let below = bodies[root + 1..].iter().take_while(|body| body.parent >= root).count();
     let mut taking = Taking {
         prefix: &attach.prefix,
-        suffix: spot.suffix,
         bodies: root..root + 1 + below,
         names: BTreeSet::new(),
         base: document.bodies.len(),
@@ -146,17 +145,18 @@ fn take(
     let taken = bodies[taking.bodies.clone()].iter().flat_map(hanging);
     let named = taken.filter(|(_, name)| !name.is_empty());
     taking.names = order::set(named.map(|(thing, name)| (thing, name.clone())));
-    take_tree(&taking, &model.document, spot, document);
-    if !spot.again {
-        take_assets(&taking, &model.document, document);
-    }
-    let actuators = take_referring(&mut taking, &model.document, document);
-    say(&taking, &model.document, &mut model.said, &actuators, document);
+    take_tree(&taking, model, spot, document);
+    // keyframes of models that it is made of keep the names that they have there
+    document.moved_keys.append(&mut model.moved_keys);
+    take_assets(&taking, model, document);
+    take_referring(&mut taking, model, document);
+    resize_keys(document);
     Ok(())
 }
 
-/// Copies bodies with what hangs on them, and the frames that they stand in.
-fn take_tree(taking: &Taking, from: &Document, spot: Spot, document: &mut Document) {
+/// Copies bodies with what hangs on them, and the frames that they stand in. What keyframes say of a body goes with it; one that does not
+/// come along keeps it for the next time that something is taken.
+fn take_tree(taking: &Taking, from: &mut Document, spot: Spot, document: &mut Document) {
     let bodies = &from.bodies[taking.bodies.clone()];
     let mut used = vec![false; from.frames.len()];
     let inner = bodies.iter().skip(1).filter_map(|body| body.within);
@@ -179,8 +179,10 @@ fn take_tree(taking: &Taking, from: &Document, spot: Spot, document: &mut Docume
         places[id] = Some(document.frames.len());
         document.frames.push(frame);
     }
-    for (index, body) in bodies.iter().enumerate() {
-        let mut body = body.clone();
+    for (index, original) in from.bodies[taking.bodies.clone()].iter_mut().enumerate() {
+        let mut body = original.clone();
+        original.states.clear();
+        original.joints.iter_mut().for_each(|joint| joint.states.clear());
         let moved = |within: Option<usize>| within.and_then(|within| places[within]);
         (body.parent, body.within) = match index {
             0 => (spot.body, spot.within),
@@ -189,7 +191,6 @@ fn take_tree(taking: &Taking, from: &Document, spot: Spot, document: &mut Docume
         take_body(taking, &mut body, moved);
         document.bodies.push(body);
     }
-    document.suffixes.extend(from.suffixes.iter().cloned());
 }
 
 /// Returns the frames that what hangs on a body stands in.
@@ -277,8 +278,8 @@ fn take_assets(taking: &Taking, from: &Document, document: &mut Document) {
     }
 }
 
-/// Copies what refers to others, if they come along; returns the places of the actuators.
-fn take_referring(taking: &mut Taking, from: &Document, document: &mut Document) -> Vec<Option<usize>> {
+/// Copies what refers to others, if they come along.
+fn take_referring(taking: &mut Taking, from: &mut Document, document: &mut Document) {
     let absent = &mut document.absent;
     taking.copy(&from.pairs, &mut document.pairs, absent);
     taking.copy(&from.excludes, &mut document.excludes, absent);
@@ -300,7 +301,12 @@ fn take_referring(taking: &mut Taking, from: &Document, document: &mut Document)
     let names = names.map(|(actuator, _)| (Thing::Actuator, actuator.name.clone()));
     taking.names.extend(names);
     taking.copy(&from.sensors, &mut document.sensors, absent);
-    actuators
+    let taken = from
+        .actuators
+        .iter_mut()
+        .zip(&actuators)
+        .filter(|(_, place)| place.is_some());
+    taken.for_each(|(actuator, _)| actuator.forget());
 }
 
 /// Refuses elements that were left out, where MuJoCo may take another element of the document for what they refer to.

@@ -2,7 +2,7 @@
 
 use super::super::composite::{Composite, CompositeSkin, CompositeType, Link, Prototypes};
 use super::super::custom::Text;
-use super::super::document::{Body, Document, Orientation};
+use super::super::document::{Body, Document, Orientation, Tri};
 use super::super::error::{ErrorKind, LoadError, UNREAD};
 use super::super::relation::Exclude;
 use super::super::schema::Element;
@@ -39,6 +39,8 @@ pub(super) fn prototypes(e: &Element) -> Result<Prototypes, &'static str> {
             _ => return Err(UNREAD),
         }
     }
+    // whatever is said: MuJoCo 3.3.0 does not read it there
+    like.joint.limited = Tri::Auto;
     if e.children.iter().filter(|part| part.name == "joint").count() > 1 {
         return Err("a cable has one <joint kind=\"main\">");
     }
@@ -66,16 +68,13 @@ pub(super) fn cable(e: &Element, spot: Spot, tree: &Tree, document: &mut Documen
     }
     (like.geom.at, like.site.at, like.joint.at) = (e.at, e.at, e.at);
     let prefix = &composite.prefix;
-    if !spot.again {
-        document.texts.push(Text {
-            at: e.at,
-            name: format!("composite_{prefix}"),
-            data: format!("rope_{prefix}"),
-        });
-    }
+    document.texts.push(Text {
+        at: e.at,
+        name: format!("composite_{prefix}"),
+        data: format!("rope_{prefix}"),
+    });
     let names = Names {
         prefix,
-        suffix: spot.suffix,
         count: links.len(),
     };
     if like.geom.kind == GeomType::Box {
@@ -116,9 +115,7 @@ fn skin(e: &Element, names: Names, size: [f64; 3], left: usize) -> Result<Option
     if names.count == 1 {
         return Err(ONE_BOX);
     }
-    // MuJoCo looks for its bodies under the names of the original, which a copy does not find
-    let original = Names { suffix: "", ..names };
-    let bodies: Vec<_> = (0..names.count).map(|index| original.of("B", index)).collect();
+    let bodies: Vec<_> = (0..names.count).map(|index| names.of("B", index)).collect();
     let like = match e.children.iter().find(|part| part.name == "skin") {
         Some(skin) => CompositeSkin::read(skin),
         None => CompositeSkin {
@@ -135,18 +132,17 @@ fn skin(e: &Element, names: Names, size: [f64; 3], left: usize) -> Result<Option
 #[derive(Clone, Copy)]
 struct Names<'a> {
     prefix: &'a str,
-    suffix: &'a str,
     /// Number of bodies.
     count: usize,
 }
 
 impl Names<'_> {
     fn of(&self, kind: &str, index: usize) -> String {
-        let Self { prefix, suffix, count } = self;
+        let Self { prefix, count } = self;
         match index {
-            0 => format!("{prefix}{kind}_first{suffix}"),
-            _ if index + 1 == *count => format!("{prefix}{kind}_last{suffix}"),
-            _ => format!("{prefix}{kind}_{index}{suffix}"),
+            0 => format!("{prefix}{kind}_first"),
+            _ if index + 1 == *count => format!("{prefix}{kind}_last"),
+            _ => format!("{prefix}{kind}_{index}"),
         }
     }
 }
@@ -161,7 +157,7 @@ fn piece(composite: &Composite, like: &Prototypes, link: &Link, index: usize, na
     body.frame.pos = link.pos;
     body.frame.orientation = Orientation::Quat(link.quat);
     let mut geom = like.geom.clone();
-    geom.name = format!("{}G{index}{}", names.prefix, names.suffix);
+    geom.name = format!("{}G{index}", names.prefix);
     if geom.kind == GeomType::Box {
         geom.frame.pos = [link.length / 2.0, 0.0, 0.0];
         geom.size[0] = link.length / 2.0;

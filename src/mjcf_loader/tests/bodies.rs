@@ -54,10 +54,16 @@ fn values_are_checked() {
         "mujoco/compiler: eulerseq must be three letters of xyzXYZ",
     );
     check(
-        "<size nuser_actuator='65'/>",
-        "mujoco/size: nuser_actuator: 65 must be from -1 to 64",
+        "<size nuser_actuator='257'/>",
+        "mujoco/size: nuser_actuator: 257 must be from -1 to 256",
     );
-    check("<extension/>", "mujoco/extension: unknown element \"extension\"");
+    check("<extension/>", "");
+    let plugin = "<extension><plugin plugin='mujoco.pid'/></extension>";
+    check(
+        plugin,
+        "mujoco/extension/plugin: plugin \"mujoco.pid\" is a program of MuJoCo's own, which is not run here: write actuators of position, and of \
+         intvelocity for the integral",
+    );
 }
 
 #[test]

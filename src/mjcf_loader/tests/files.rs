@@ -70,6 +70,10 @@ fn includes_splice_and_are_bounded() {
         "<include file='other.xml'><geom/></include>",
         "mujoco/include/geom: unknown element \"geom\"",
     );
+    check(
+        "<include file='other.xml'><!-- a --></include>",
+        "mujoco/include: an include is empty: put comments before it",
+    );
     for path in ["/etc/passwd", "../m.xml", "a/../../m.xml", "c:/x", "a\\b", ""] {
         let message = format!("mujoco/include: path \"{path}\" is not a relative path inside the asset source");
         check(&format!("<include file='{path}'/>"), &message);
@@ -187,7 +191,10 @@ fn layers_and_embedded_files_are_found() {
     let both = Overlay::new(below).with(above);
     assert_eq!(load(&both, "kit/./a.xml").unwrap().name(), "embedded");
     assert_eq!(load(&both, "x/../kit/c.xml").unwrap().name(), "above");
-    assert_eq!(load(&both, "b.xml").unwrap_err().to_string(), "b.xml: not UTF-8 text");
+    assert_eq!(
+        load(&both, "b.xml").unwrap_err().to_string(),
+        "b.xml: not UTF-8 text, nor does it begin with <?xml version=\"1.0\" encoding=\"ISO-8859-1\"?>"
+    );
     assert_eq!(
         load(&both, "d.xml").unwrap_err().to_string(),
         "d.xml: file \"d.xml\" does not exist"

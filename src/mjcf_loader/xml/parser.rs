@@ -88,20 +88,33 @@ impl<'t> Parser<'t> {
                     self.open.pop();
                 }
                 Ok(Event::Eof) => return self.end(),
-                Ok(Event::Comment(_) | Event::Decl(_)) => {}
+                Ok(Event::Decl(_)) => {}
                 Ok(Event::Text(content)) if content.trim().is_empty() => {}
-                // as in MuJoCo, text within elements says nothing
-                Ok(Event::Text(content)) if !self.open.is_empty() && !content.contains('\0') => {}
-                Ok(Event::GeneralRef(_)) if !self.open.is_empty() => {}
+                // as in MuJoCo, text within elements says nothing, and ends at a null character
+                Ok(Event::Text(content)) if !self.open.is_empty() && !content.contains('\0') => self.fill(),
+                Ok(Event::CData(content)) if !self.open.is_empty() && !content.contains('\0') => self.fill(),
+                Ok(Event::Comment(content)) if !content.contains('\0') => self.fill(),
+                Ok(Event::GeneralRef(_)) if !self.open.is_empty() => self.fill(),
+                // of style sheets and other programs, before the root
+                Ok(Event::PI(_)) if self.root.is_none() && self.open.is_empty() => {}
+                Ok(Event::DocType(content)) if self.open.is_empty() && !content.contains('[') => {}
+                Ok(Event::Comment(_)) => return Err(self.fail(ErrorKind::Forbidden("a null character"))),
                 Ok(Event::Text(_) | Event::GeneralRef(_)) => return Err(self.fail(ErrorKind::Forbidden("text"))),
                 Ok(Event::CData(_)) => return Err(self.fail(ErrorKind::Forbidden("a CDATA section"))),
                 Ok(Event::PI(_)) => return Err(self.fail(ErrorKind::Forbidden("a processing instruction"))),
-                Ok(Event::DocType(_)) => return Err(self.fail(ErrorKind::Forbidden("a document type"))),
+                Ok(Event::DocType(_)) => return Err(self.fail(ErrorKind::Forbidden("a document type with entities"))),
                 Err(error) => {
                     self.cursor.advance(reader.error_position());
                     return Err(self.fail(ErrorKind::Xml(error.to_string())));
                 }
             }
+        }
+    }
+
+    /// Notes that there is something in the open element beside elements.
+    fn fill(&mut self) {
+        if let Some(&at) = self.open.last() {
+            self.tree.nodes[at].filled = true;
         }
     }
 
@@ -138,6 +151,7 @@ impl<'t> Parser<'t> {
             line: self.cursor.line,
             column: self.cursor.column,
             parent: self.open.last().copied(),
+            filled: false,
         });
         self.tree.nodes[at].attributes = found.map_err(|kind| self.tree.error(at, kind))?;
         match self.open.last() {

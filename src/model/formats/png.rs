@@ -10,7 +10,7 @@ use thiserror::Error;
 use crate::files::replace_file;
 
 pub use ::png::ColorType;
-pub use read::{Picture, decode_png, is_opaque};
+pub use read::{Picture, check_png, decode_png, is_opaque};
 
 /// An error in writing a picture.
 #[derive(Debug, Error)]

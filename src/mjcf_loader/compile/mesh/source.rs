@@ -23,6 +23,16 @@ pub(super) fn read(
         Some(path) => from_file(context, mesh, path, source, *left)?,
         None => Surface::default(),
     };
+    if path.is_none()
+        && mesh
+            .content_type
+            .as_ref()
+            .is_some_and(|format| !is_content_type(format))
+    {
+        return Err(invalid(
+            "content_type must be two words with a slash between, such as model/obj",
+        ));
+    }
     let of_obj = path.is_some_and(|path| format(mesh, path) == Some(MeshFormat::Obj));
     own(mesh, &mut surface).map_err(invalid)?;
     *left = left.checked_sub(surface.elements()).ok_or_else(|| {
@@ -53,6 +63,12 @@ pub(super) fn read(
         return Err(invalid("there must be as many texture coordinates as vertices"));
     }
     Ok(surface)
+}
+
+/// Tells whether a format is written as those of files are: a kind, a slash, a name.
+fn is_content_type(text: &str) -> bool {
+    text.split_once('/')
+        .is_some_and(|(kind, name)| !kind.is_empty() && !name.is_empty())
 }
 
 /// Returns the format of a file.

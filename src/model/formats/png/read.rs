@@ -45,6 +45,16 @@ pub fn decode_png(bytes: &[u8], limits: &Limits) -> Result<Picture, String> {
     })
 }
 
+/// Checks a PNG picture as far as possible without decoding it, each chunk by its checksum; returns width and height, pixels. The error is as that of
+/// [`decode_png`].
+pub fn check_png(bytes: &[u8], limits: &Limits) -> Result<[u32; 2], String> {
+    let pixels = essential(bytes, limits)?;
+    let header = chunk(&pixels, SIGNATURE.len())?;
+    let side = |at: usize| header.data.get(at..).and_then(|rest| rest.first_chunk::<4>());
+    let sides = [0, 4].map(|at| side(at).map_or(0, |side| u32::from_be_bytes(*side)));
+    Ok(sides)
+}
+
 /// Tells whether nothing shows through a PNG picture: each pixel of it has all of its opacity. One with a transparent colour (chunk tRNS) is
 /// taken for one that something shows through.
 ///

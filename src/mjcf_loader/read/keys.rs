@@ -1,0 +1,122 @@
+//! Keyframes beside `<attach>` and `<replicate>`, as MuJoCo 3.3.0 takes them along: what one says is kept by the joints, actuators and mocap
+//! bodies that are there at that time, and goes with their copies.
+
+use super::super::actuator::Actuator;
+use super::super::attached::{MovedKey, Sizes, na};
+use super::super::custom::Key;
+use super::super::document::{Body, Document};
+use super::super::error::{ErrorKind, LoadError};
+use super::super::xml::Tree;
+
+/// Tells all elements of a document what its keyframes say of them; returns the keyframes, whose names now have a prefix and a suffix.
+///
+/// # Errors
+/// A keyframe has another size than the state has at this time.
+pub(super) fn say_keys(
+    document: &mut Document,
+    (prefix, suffix): (&str, &str),
+    tree: &Tree,
+) -> Result<Vec<MovedKey>, LoadError> {
+    let sizes = Sizes::of(document);
+    let Document {
+        keys,
+        bodies,
+        actuators,
+        ..
+    } = document;
+    let mut moved = Vec::with_capacity(keys.len());
+    for key in keys.iter() {
+        if let Some((attribute, found, wanted)) = sizes.misfit(key) {
+            let (min, max) = (wanted, wanted);
+            let kind = ErrorKind::WrongCount {
+                attribute,
+                found,
+                min,
+                max,
+            };
+            return Err(tree.error(key.at, kind));
+        }
+        let name = format!("{prefix}{}{suffix}", key.name);
+        say(key, &name, bodies, actuators);
+        let (at, time) = (key.at, key.time);
+        moved.push(MovedKey { at, name, time });
+    }
+    Ok(moved)
+}
+
+/// Takes the next numbers of a keyframe; none where it says nothing.
+fn next(numbers: &mut &[f64], count: usize) -> Vec<f64> {
+    let (own, rest) = numbers.split_at(count.min(numbers.len()));
+    *numbers = rest;
+    own.to_vec()
+}
+
+/// Tells elements what a keyframe says of them.
+fn say(key: &Key, name: &str, bodies: &mut [Body], actuators: &mut [Actuator]) {
+    let mut qpos = key.qpos.as_slice();
+    let mut qvel = key.qvel.as_slice();
+    let mut mpos = key.mpos.as_slice();
+    let mut mquat = key.mquat.as_slice();
+    for body in bodies {
+        for joint in &mut body.joints {
+            let said = [next(&mut qpos, joint.kind.nq()), next(&mut qvel, joint.kind.nv())];
+            joint.states.insert(name.to_owned(), said);
+        }
+        if body.mocap {
+            let said = [next(&mut mpos, 3), next(&mut mquat, 4)];
+            body.states.insert(name.to_owned(), said);
+        }
+    }
+    let (mut act, mut ctrl) = (key.act.as_slice(), key.ctrl.as_slice());
+    for actuator in actuators {
+        let said = [next(&mut act, na(actuator)), next(&mut ctrl, 1)];
+        actuator.states.insert(name.to_owned(), said);
+    }
+}
+
+/// Makes the document's own keyframes as long as its state is now that something has come along. MuJoCo 3.3.0 does not know yet which joints
+/// are balls or free, nor in which units angles are: their coordinates become 0, the others `ref` as it is written.
+pub(super) fn resize_keys(document: &mut Document) {
+    if document.keys.is_empty() {
+        return;
+    }
+    let sizes = Sizes::of(document);
+    let mut reference = Vec::with_capacity(sizes.nq);
+    let mut mpos = Vec::with_capacity(3 * sizes.nmocap);
+    for body in &document.bodies {
+        for joint in &body.joints {
+            reference.push(joint.reference);
+            reference.resize(reference.len() + joint.kind.nq() - 1, 0.0);
+        }
+        if body.mocap {
+            mpos.extend(body.frame.pos);
+        }
+    }
+    let mquat = body_quats(&document.bodies);
+    let grow = |numbers: &mut Vec<f64>, rest: &[f64]| {
+        if !numbers.is_empty() {
+            numbers.truncate(rest.len());
+            numbers.extend(&rest[numbers.len()..]);
+        }
+    };
+    let zeros = |count: usize| vec![0.0; count];
+    for key in &mut document.keys {
+        grow(&mut key.qpos, &reference);
+        grow(&mut key.qvel, &zeros(sizes.nv));
+        grow(&mut key.act, &zeros(sizes.na));
+        grow(&mut key.ctrl, &zeros(sizes.nu));
+        grow(&mut key.mpos, &mpos);
+        grow(&mut key.mquat, &mquat);
+    }
+}
+
+/// Returns the quaternions of mocap bodies that are written as such; the others count for nothing yet.
+fn body_quats(bodies: &[Body]) -> Vec<f64> {
+    use super::super::document::Orientation;
+    let moved = bodies.iter().filter(|body| body.mocap);
+    let quat = |body: &Body| match body.frame.orientation {
+        Orientation::Quat(quat) => quat,
+        _ => crate::math::QUAT_ID,
+    };
+    moved.flat_map(quat).collect()
+}

@@ -1,0 +1,305 @@
+//! `<replicate>`: copies of what it holds and of all that refers to that, as MuJoCo 3.3.0 makes them.
+//!
+//! What it holds is read once, under its own names, into a body that stands for all copies. Each copy takes what hangs on that body and the
+//! bodies in it, with the number of the copy behind their names. Elements outside that refer to it by name are copied beside it, as far as
+//! all or, of some kinds, a part of what they refer to was copied; those that refer to the original go with it.
+
+use super::super::attached::{Known, Referring, Thing, hanging, said};
+use super::super::document::{Body, BodyFrame, Copied, Document, Orientation, Replicate};
+use super::super::error::{ErrorKind, LoadError};
+use super::super::schema::Element;
+use super::super::table::Table;
+use super::super::xml::Tree;
+use super::Classes;
+use super::content::{Spot, known};
+use super::keys::{resize_keys, say_keys};
+
+/// How many times as many elements as a document may have are looked at for copies: those that refer to others are for every copy again.
+const LOOKS: usize = 100;
+
+/// What a `<replicate>` holds, while it is read.
+pub(super) struct Original {
+    replicate: Replicate,
+    /// The body that it hangs on, and the frame that it stands in. Bodies and frames in them follow.
+    body: usize,
+    frame: usize,
+}
+
+impl Original {
+    /// Returns where the elements in it are put.
+    pub fn spot(&self) -> Spot {
+        Spot {
+            body: self.body,
+            within: Some(self.frame),
+        }
+    }
+}
+
+/// Adds the body and the frame for what a `<replicate>` holds. It is kept out of `content`, which recurses, so that its stack frames stay
+/// small.
+#[inline(never)]
+pub(super) fn open(
+    e: &Element,
+    spot: Spot,
+    inner: &str,
+    classes: &Classes,
+    document: &mut Document,
+) -> Result<Original, LoadError> {
+    known(e, inner, classes)?;
+    let original = Original {
+        replicate: Replicate::read(e),
+        body: document.bodies.len(),
+        frame: document.frames.len(),
+    };
+    document.bodies.push(Body {
+        at: e.at,
+        parent: spot.body,
+        ..Body::initial()
+    });
+    let frame = original.step(spot, 0, None);
+    document.frames.push(frame);
+    Ok(original)
+}
+
+impl Original {
+    /// Returns the frame of a copy: the step from the one before.
+    fn step(&self, spot: Spot, number: usize, previous: Option<usize>) -> BodyFrame {
+        let mut frame = BodyFrame {
+            at: self.replicate.at,
+            within: spot.within,
+            copy: Some(Copied { number, previous }),
+            ..BodyFrame::initial()
+        };
+        frame.frame.pos = self.replicate.offset;
+        frame.frame.orientation = Orientation::Euler(self.replicate.euler);
+        frame
+    }
+
+    /// Makes the copies and takes the original away. As [`open`], it is kept out of `content`.
+    #[inline(never)]
+    pub fn copy(&self, spot: Spot, tree: &Tree, document: &mut Document) -> Result<(), LoadError> {
+        let at = self.replicate.at;
+        let count = usize::try_from(self.replicate.count).unwrap_or(0);
+        let joints = &document.bodies[self.body].joints;
+        if let Some(joint) = joints.first().filter(|_| spot.body == 0 && count > 0) {
+            let what = "the world has no joints and no inertia";
+            return Err(tree.error(joint.at, ErrorKind::Invalid(what)));
+        }
+        let ends = (document.bodies.len(), document.frames.len());
+        let each = amount(&document.bodies[self.body..]) + ends.1 - self.frame;
+        let mut names = Known::of(document);
+        look(document, at, tree)?;
+        let (digits, mut previous) = (count.to_string().len(), None);
+        for number in 0..count {
+            document.copies = document.copies.saturating_add(each);
+            let limit = tree.limits.elements;
+            if document.copies > limit {
+                let what = "frames and copies of elements";
+                return Err(tree.error(at, ErrorKind::TooMuch { what, limit }));
+            }
+            let suffix = format!("{}{number:0digits$}", self.replicate.sep);
+            move_keys(document, &suffix, at, tree)?;
+            let (body, frame) = (document.bodies.len(), document.frames.len());
+            self.copy_tree(spot, ends, (number, previous), &suffix, document);
+            previous = Some(frame);
+            names.add(document.bodies[body..].iter().flat_map(hanging));
+            names.add(hanging(&document.bodies[spot.body]));
+            look(document, at, tree)?;
+            copy_referring(&suffix, &mut names, document);
+            resize_keys(document);
+        }
+        // MuJoCo compares with a copy of the whole model, and in making that forgets what keyframes said of actuators so far
+        for actuator in &mut document.actuators {
+            if actuator.readdress("", &names) {
+                actuator.forget();
+            }
+        }
+        move_keys(document, "", at, tree)?;
+        document.keys.clear();
+        self.take_away(spot, ends, document);
+        look(document, at, tree)?;
+        forget_lost(&names, document);
+        Ok(())
+    }
+
+    /// Adds a copy of the bodies from `self.body` and the frames from `self.frame` to the `ends`.
+    fn copy_tree(
+        &self,
+        spot: Spot,
+        ends: (usize, usize),
+        (number, previous): (usize, Option<usize>),
+        suffix: &str,
+        document: &mut Document,
+    ) {
+        let by_frame = document.frames.len() - self.frame;
+        let moved = |within: Option<usize>| within.map(|at| if at >= self.frame { at + by_frame } else { at });
+        document.frames.push(self.step(spot, number, previous));
+        for at in self.frame + 1..ends.1 {
+            let mut frame = document.frames[at].clone();
+            rename(&mut frame.name, suffix);
+            frame.within = moved(frame.within);
+            if let Some(copied) = &mut frame.copy {
+                copied.previous = moved(copied.previous);
+            }
+            document.frames.push(frame);
+        }
+        let mut held = document.bodies[self.body].clone();
+        readdress_hung(&mut held, suffix, &moved);
+        let to = &mut document.bodies[spot.body];
+        to.joints.append(&mut held.joints);
+        to.geoms.append(&mut held.geoms);
+        to.sites.append(&mut held.sites);
+        to.cameras.append(&mut held.cameras);
+        to.lights.append(&mut held.lights);
+        // the body that stands for the copies is left out
+        let by_body = document.bodies.len() - self.body - 1;
+        for at in self.body + 1..ends.0 {
+            let original = &mut document.bodies[at];
+            let mut body = original.clone();
+            original.states.clear();
+            original.joints.iter_mut().for_each(|joint| joint.states.clear());
+            rename(&mut body.name, suffix);
+            body.within = moved(body.within);
+            body.parent = match body.parent {
+                parent if parent == self.body => spot.body,
+                parent => parent + by_body,
+            };
+            readdress_hung(&mut body, suffix, &moved);
+            document.bodies.push(body);
+        }
+    }
+
+    /// Takes the original away: bodies and frames that follow move up.
+    fn take_away(&self, spot: Spot, ends: (usize, usize), document: &mut Document) {
+        let (bodies, frames) = (ends.0 - self.body, ends.1 - self.frame);
+        document.bodies.drain(self.body..ends.0);
+        document.frames.drain(self.frame..ends.1);
+        let moved = |within: Option<usize>| within.map(|at| if at >= ends.1 { at - frames } else { at });
+        for frame in &mut document.frames[self.frame..] {
+            frame.within = moved(frame.within);
+            if let Some(copied) = &mut frame.copy {
+                copied.previous = moved(copied.previous);
+            }
+        }
+        readdress_hung(&mut document.bodies[spot.body], "", &moved);
+        for body in &mut document.bodies[self.body..] {
+            body.within = moved(body.within);
+            if body.parent >= ends.0 {
+                body.parent -= bodies;
+            }
+            readdress_hung(body, "", &moved);
+        }
+    }
+}
+
+/// Adds to a name that is given.
+fn rename(name: &mut String, suffix: &str) {
+    if !name.is_empty() {
+        name.push_str(suffix);
+    }
+}
+
+/// Adds to the names of what hangs on a body; `moved` tells where frames are now. Cameras and lights aim at the copies of their targets.
+fn readdress_hung(body: &mut Body, suffix: &str, moved: &dyn Fn(Option<usize>) -> Option<usize>) {
+    for joint in &mut body.joints {
+        rename(&mut joint.name, suffix);
+        joint.within = moved(joint.within);
+    }
+    for geom in &mut body.geoms {
+        rename(&mut geom.name, suffix);
+        geom.within = moved(geom.within);
+    }
+    for site in &mut body.sites {
+        rename(&mut site.name, suffix);
+        site.within = moved(site.within);
+    }
+    for camera in &mut body.cameras {
+        rename(&mut camera.name, suffix);
+        camera.target.iter_mut().for_each(|target| rename(target, suffix));
+        camera.within = moved(camera.within);
+    }
+    for light in &mut body.lights {
+        rename(&mut light.name, suffix);
+        light.target.iter_mut().for_each(|target| rename(target, suffix));
+        light.within = moved(light.within);
+    }
+}
+
+/// Returns the number of bodies and of what hangs on them.
+fn amount(bodies: &[Body]) -> usize {
+    bodies
+        .iter()
+        .map(|body| hanging(body).count() + body.lights.len())
+        .sum()
+}
+
+/// Counts the elements that are looked at for a copy.
+fn look(document: &mut Document, at: usize, tree: &Tree) -> Result<(), LoadError> {
+    let pieces: usize = document.tendons.iter().map(|tendon| tendon.path.len()).sum();
+    let referring = document.pairs.len() + document.excludes.len() + document.equalities.len();
+    document.looks += 1 + pieces + referring + document.actuators.len() + document.sensors.len();
+    let limit = LOOKS.saturating_mul(tree.limits.elements);
+    if document.looks > limit {
+        let what = "elements that are looked at for what refers to copies";
+        return Err(tree.error(at, ErrorKind::TooMuch { what, limit }));
+    }
+    Ok(())
+}
+
+/// Makes the document's keyframes, with a suffix, such as follow its own.
+fn move_keys(document: &mut Document, suffix: &str, at: usize, tree: &Tree) -> Result<(), LoadError> {
+    let said = said(document);
+    document.copied.add_keys(said, at, tree)?;
+    let keys = say_keys(document, ("", suffix), tree)?;
+    document.moved_keys.extend(keys);
+    Ok(())
+}
+
+/// Copies the elements that refer to what was copied.
+fn copy_referring(suffix: &str, names: &mut Known, document: &mut Document) {
+    copy_list(&mut document.pairs, suffix, names);
+    copy_list(&mut document.excludes, suffix, names);
+    let tendons = copy_list(&mut document.tendons, suffix, names);
+    let tendons = &document.tendons[tendons..];
+    names.add(tendons.iter().map(|tendon| (Thing::Tendon, &tendon.name)));
+    copy_list(&mut document.equalities, suffix, names);
+    let actuators = copy_list(&mut document.actuators, suffix, names);
+    let actuators = &document.actuators[actuators..];
+    names.add(actuators.iter().map(|actuator| (Thing::Actuator, &actuator.name)));
+    copy_list(&mut document.sensors, suffix, names);
+}
+
+/// Copies elements of a list to its end; returns where the copies begin.
+fn copy_list<T: Referring>(list: &mut Vec<T>, suffix: &str, names: &Known) -> usize {
+    let end = list.len();
+    for at in 0..end {
+        let mut copy = list[at].clone();
+        if copy.readdress(suffix, names) {
+            list[at].forget();
+            rename(copy.name(), suffix);
+            list.push(copy);
+        }
+    }
+    end
+}
+
+/// Takes elements away that refer to what was taken away, but not those that already referred to nothing in the document: they are errors.
+fn forget_lost(before: &Known, document: &mut Document) {
+    let mut now = Known::of(document);
+    keep(&mut document.pairs, before, &now);
+    keep(&mut document.excludes, before, &now);
+    for mut tendon in keep(&mut document.tendons, before, &now) {
+        now.remove(Thing::Tendon, tendon.name());
+    }
+    keep(&mut document.equalities, before, &now);
+    for mut actuator in keep(&mut document.actuators, before, &now) {
+        now.remove(Thing::Actuator, actuator.name());
+    }
+    keep(&mut document.sensors, before, &now);
+}
+
+/// Returns the elements of a list that it does not keep.
+fn keep<T: Referring>(list: &mut Vec<T>, before: &Known, now: &Known) -> Vec<T> {
+    let lost = |element: &mut T| element.readdress("", before) && !element.readdress("", now);
+    list.extract_if(.., lost).collect()
+}
