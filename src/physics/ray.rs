@@ -17,8 +17,9 @@ pub(super) fn nearest_geom(
 ) -> Option<(usize, f64)> {
     let mut nearest: Option<(usize, f64)> = None;
     for g in 0..model.ngeom() {
+        // a material decides alone, whatever the geom's own opacity
         let opacity = match model.geom_matid[g] {
-            Some(material) => model.geom_rgba[g][3].max(model.materials[material].rgba[3]),
+            Some(material) => model.materials[material].rgba[3],
             None => model.geom_rgba[g][3],
         };
         if model.geom_bodyid[g] == without_body || opacity == 0.0 {
@@ -33,8 +34,8 @@ pub(super) fn nearest_geom(
                 mesh.and_then(|mesh| ray_mesh(mesh, radius, within()))
             }
             (GeomType::HField, Some(id)) => {
-                let field = model.hfields.get(id);
-                field.and_then(|field| ray_hfield(field, within()))
+                let fields = model.hfields.get(id..).unwrap_or_default();
+                ray_hfield(fields, within())
             }
             _ => ray_shape(model.geom_type[g], size, pos, mat, origin, direction),
         };
@@ -102,9 +103,10 @@ fn across(v: Vec3) -> [Vec3; 2] {
     [across, cross(along, across)]
 }
 
-/// Returns the distance at which a ray meets a height field: its base, a triangle of its surface or a side (MuJoCo's
+/// Returns the distance at which a ray meets the first of some height fields: its base, a triangle of its surface or a side (MuJoCo's
 /// `mj_rayHfield`).
-fn ray_hfield(field: &HField, (p, v): (Vec3, Vec3)) -> Option<f64> {
+fn ray_hfield(fields: &[HField], (p, v): (Vec3, Vec3)) -> Option<f64> {
+    let field = fields.first()?;
     let [x, y, top, base] = field.size;
     let part = |middle: f64, half: f64| sides([x, y, half], [p[0], p[1], p[2] - middle], v);
     let mut nearest = least(&part(-0.5 * base, 0.5 * base));
@@ -117,7 +119,13 @@ fn ray_hfield(field: &HField, (p, v): (Vec3, Vec3)) -> Option<f64> {
         }
     }
     let steps = [2.0 * x / (field.ncol - 1) as f64, 2.0 * y / (field.nrow - 1) as f64];
-    let over = OverField { field, p, v, steps };
+    let over = OverField {
+        field,
+        fields,
+        p,
+        v,
+        steps,
+    };
     over.surface(segment, &mut nearest);
     over.sides(&upper, &mut nearest);
     nearest
@@ -126,6 +134,8 @@ fn ray_hfield(field: &HField, (p, v): (Vec3, Vec3)) -> Option<f64> {
 /// A ray over the grid of a height field, in the frame of the field.
 struct OverField<'a> {
     field: &'a HField,
+    /// The field and those that follow it.
+    fields: &'a [HField],
     p: Vec3,
     v: Vec3,
     /// Distances of the columns and of the rows, m.
@@ -146,8 +156,16 @@ impl OverField<'_> {
         first..(a.max(b).ceil() + 1.0).clamp(0.0, last) as usize
     }
 
+    /// Returns a height, of 1. Beyond its end MuJoCo 3.3.0 reads on into the fields that follow.
     fn height(&self, place: usize) -> f64 {
-        self.field.data.get(place).copied().map_or(0.0, f64::from)
+        let mut left = place;
+        for field in self.fields {
+            match field.data.get(left) {
+                Some(height) => return f64::from(*height),
+                None => left -= field.data.len(),
+            }
+        }
+        0.0
     }
 
     /// Keeps the nearest triangle that the ray meets in a part of it.
@@ -155,7 +173,7 @@ impl OverField<'_> {
     /// MuJoCo looks at all squares of the rectangle that the ray crosses; it meets none but those near it, of each row those that it is
     /// over while it is over the row or one beside it.
     fn surface(&self, segment: [f64; 2], nearest: &mut Option<f64>) {
-        let Self { field, p, v, steps } = *self;
+        let Self { field, p, v, steps, .. } = *self;
         let over_row = |r: usize| {
             let at = |row: f64| (steps[1] * row - field.size[1] - p[1]) / v[1];
             let (a, b) = (at(r as f64 - 1.0), at(r as f64 + 2.0));

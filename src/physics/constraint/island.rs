@@ -351,6 +351,12 @@ impl Island {
         total(&length2).sqrt()
     }
 
+    /// Returns the length of the constraint force.
+    pub(super) fn constraint_force_length(&self) -> f64 {
+        let squares = self.constraint_force.iter().flatten().map(|force| force * force);
+        squares.sum::<f64>().sqrt()
+    }
+
     /// Computes the sums along the search direction that the line search starts from.
     #[inline(always)]
     pub(super) fn along_search(&self) -> AlongSearch {

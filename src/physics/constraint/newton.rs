@@ -185,7 +185,7 @@ impl Newton {
         efc: &mut Efc,
         s: &mut State,
     ) {
-        let (mut cost, length) = self.begin(model, topology, blocks, efc, s);
+        let (mut cost, mut length) = self.begin(model, topology, blocks, efc, s);
         let rests = self.rests(topology, s, length);
         let (island, hessian) = (&mut self.island, &mut self.hessian);
         let newton = model.opt.solver != SolverType::Cg;
@@ -212,8 +212,10 @@ impl Newton {
                 break;
             }
             // a slope that is not negative comes from rounding: there is nothing left to descend. Conjugate gradients may lead upwards
-            // where a search was cut off, and MuJoCo then goes back along them.
-            if newton && (along.slope >= 0.0 || -along.slope < MINVAL) {
+            // where a search was cut off, and MuJoCo then goes back along them. Rows with nearly no regularisation are so stiff that a
+            // slope of nothing can be one of forces.
+            let level = || -along.slope < MINVAL && length <= BALANCED * island.constraint_force_length();
+            if newton && (along.slope >= 0.0 || level()) {
                 break;
             }
             for (c, _) in &mut island.cones {
@@ -227,7 +229,7 @@ impl Newton {
             island.advance(alpha);
             let previous = cost;
             cost = island.evaluate();
-            let length = island.differentiate(efc);
+            length = island.differentiate(efc);
             // MuJoCo's two criteria; it applies them to all islands at once, so where it iterates on for another island
             // it may be nearer to the minimum here
             if scale * (previous - cost) < model.opt.tolerance || scale * length < model.opt.tolerance {
@@ -257,6 +259,9 @@ fn step_length(model: &Model, island: &Island, along: &AlongSearch, scale: f64) 
         )
     }
 }
+
+/// Part of the constraint forces by which they may miss the balance where the solver stops because the cost is level.
+const BALANCED: f64 = 1e-6;
 
 /// Computes the forces of a contact or weld that nothing can move: those that its rows ask for at no acceleration.
 fn push_alone(b: &Block, efc: &mut Efc) {

@@ -316,7 +316,12 @@ fn statistics(model: &Arrays, s: &State, dof_m0: &[f64]) -> Statistic {
         stat.center = std::array::from_fn(|k| 0.5 * (low[k] + high[k]));
     }
     if stat.extent == 0.0 {
-        stat.extent = extent.max(2.0 * meansize);
+        // that of a world without geoms is MuJoCo's of nothing
+        stat.extent = if model.ngeom() == 0 {
+            2.0
+        } else {
+            extent.max(2.0 * meansize)
+        };
     }
     stat
 }

@@ -99,7 +99,8 @@ fn resistance(size: Vec3, turning: Vec3, moving: Vec3, density: f64, viscosity: 
 /// Computes `qfrc_gravcomp`, which holds up the part of the weight of each body that is compensated, and adds it to `qfrc_passive`, but
 /// for joints whose actuators do it.
 pub(super) fn gravity_compensation(model: &Model, s: &mut State) {
-    if model.body_gravcomp.iter().all(|part| *part == 0.0) {
+    // MuJoCo 3.3.0 counts the positive ones: without any the others hold nothing, either
+    if model.body_gravcomp.iter().all(|part| *part <= 0.0) {
         return;
     }
     s.qfrc_gravcomp.fill(0.0);

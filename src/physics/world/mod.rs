@@ -4,6 +4,7 @@
 //! on world poses, as contact geometry is discontinuous in their last bits.
 
 mod boxes;
+mod broad;
 mod pairs;
 mod sweep;
 mod trees;

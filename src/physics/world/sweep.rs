@@ -1,7 +1,7 @@
 //! Contact detection: sweep and prune along x, then the exact routines.
 
-use super::boxes;
 use super::pairs::Order;
+use super::{boxes, broad};
 use crate::contact::{ContactOptions, ContactPoint, PlacedGeom, Scratch, bounding_test, collide};
 use crate::engine::{EngineError, within};
 use crate::limits::Limits;
@@ -129,6 +129,9 @@ impl Sweep {
         let (scratch, points) = (&mut self.scratch, &mut self.points);
         points.clear();
         collide(&first, &second, pair.margin, &self.options, scratch, points);
+        if !points.is_empty() && broad::drops(model, s, pair.geom) {
+            return;
+        }
         if pair.midphase && !points.is_empty() && table.trees().apart(&first, &second, model, pair, s) {
             return;
         }
