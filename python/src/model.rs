@@ -35,12 +35,12 @@ table! { ARRAYS, array, Arrays,
     geom_type geom_size geom_bodyid geom_pos geom_quat geom_contype geom_conaffinity geom_condim geom_priority
     geom_friction geom_solmix geom_solref geom_solimp geom_margin geom_gap geom_rbound geom_group geom_rgba geom_matid
     site_type site_bodyid site_size site_pos site_quat site_group site_rgba site_matid
-    cam_bodyid cam_pos cam_quat cam_fovy cam_user
+    cam_bodyid cam_pos cam_quat cam_fovy cam_orthographic cam_user
     pair_geom pair_dim pair_solref pair_solreffriction pair_solimp pair_friction pair_margin pair_gap
     exclude
     eq_active0 eq_solref eq_solimp
     tendon_limited tendon_range tendon_margin tendon_solref_lim tendon_solimp_lim tendon_invweight0
-    actuator_trnid actuator_gear actuator_ctrllimited actuator_ctrlrange actuator_forcelimited actuator_forcerange
+    actuator_trnid actuator_refid actuator_gear actuator_ctrllimited actuator_ctrlrange actuator_forcelimited actuator_forcerange
     actuator_lengthrange actuator_dyntype actuator_dynprm actuator_actadr actuator_actlimited actuator_actrange actuator_actearly
     actuator_gaintype actuator_gainprm actuator_biastype actuator_biasprm actuator_user
     sensor_type sensor_objtype sensor_objid sensor_reftype sensor_refid sensor_adr sensor_cutoff sensor_noise

@@ -164,7 +164,7 @@ impl Current {
 }
 
 /// The flags of a simulation in the order of MuJoCo's `mjtDisableBit`.
-fn flags(flags: &mut Flags) -> [&mut bool; 15] {
+fn flags(flags: &mut Flags) -> [&mut bool; 17] {
     [
         &mut flags.constraint,
         &mut flags.equality,
@@ -181,7 +181,26 @@ fn flags(flags: &mut Flags) -> [&mut bool; 15] {
         &mut flags.sensor,
         &mut flags.midphase,
         &mut flags.eulerdamp,
+        &mut flags.autoreset,
+        &mut flags.nativeccd,
     ]
+}
+
+/// The flags that are off by default, in the order of MuJoCo's `mjtEnableBit`, with the bit of the first. The bits around them are
+/// `override`, which is never on, and `island`, which documents alone set.
+fn enabled(flags: &mut Flags) -> (usize, [&mut bool; 4]) {
+    let flags = [
+        &mut flags.energy,
+        &mut flags.fwdinv,
+        &mut flags.invdiscrete,
+        &mut flags.multiccd,
+    ];
+    (1, flags)
+}
+
+/// Returns the bit of islands in MuJoCo's `mjtEnableBit`, if they are on.
+fn islands(flags: &Flags) -> usize {
+    usize::from(flags.island) << 5
 }
 
 #[pymethods]
@@ -295,6 +314,16 @@ impl PhysicsModel {
             .enumerate()
             .map(|(bit, on)| u32::from(!*on) << bit);
         settings.set_item("disableflags", bits.sum::<u32>())?;
+        let (first, on) = enabled(&mut own);
+        let bits = on
+            .into_iter()
+            .enumerate()
+            .map(|(bit, on)| usize::from(*on) << (first + bit));
+        let bits: usize = bits.sum();
+        settings.set_item("enableflags", bits | islands(&own))?;
+        settings.set_item("noslip_iterations", m.opt.noslip_iterations)?;
+        settings.set_item("disableactuator", m.opt.disableactuator)?;
+        settings.set_item("nuserdata", m.nuserdata)?;
         for (name, value) in [
             ("meaninertia", m.stat.meaninertia),
             ("meanmass", m.stat.meanmass),
@@ -313,8 +342,9 @@ impl PhysicsModel {
     fn set_option(&self, name: &str, value: i64) -> PyResult<()> {
         let refused = || {
             PyAttributeError::new_err(format!(
-                "opt.{name} cannot be {value} here: what can be set are iterations, ls_iterations and ccd_iterations (0 or more), \
-                 integrator (0 Euler, 1 RK4, 2 implicit, 3 implicitfast) and disableflags (bits 0 to 14); set others in the document"
+                "opt.{name} cannot be {value} here: what can be set are iterations, ls_iterations, ccd_iterations and noslip_iterations (0 or more), \
+                 integrator (0 Euler, 1 RK4, 2 implicit, 3 implicitfast), disableflags (bits 0 to 16), enableflags (bits 1 to 4) and \
+                 disableactuator (bits 0 to 30); set others in the document"
             ))
         };
         let count = usize::try_from(value).map_err(|_| refused())?;
@@ -330,7 +360,15 @@ impl PhysicsModel {
                 ("integrator", 1) => opt.integrator = IntegratorType::Rk4,
                 ("integrator", 2) => opt.integrator = IntegratorType::Implicit,
                 ("integrator", 3) => opt.integrator = IntegratorType::ImplicitFast,
-                ("disableflags", 0..0x8000) => {
+                ("noslip_iterations", 0..=1_000_000) => opt.noslip_iterations = count,
+                ("disableactuator", 0..0x8000_0000) => opt.disableactuator = count as u32,
+                ("enableflags", _) if count & !0b1_1110 == islands(&opt.flags) => {
+                    let (first, on) = enabled(&mut opt.flags);
+                    for (bit, on) in on.into_iter().enumerate() {
+                        *on = count >> (first + bit) & 1 == 1;
+                    }
+                }
+                ("disableflags", 0..0x2_0000) => {
                     for (bit, on) in flags(&mut opt.flags).into_iter().enumerate() {
                         *on = count >> bit & 1 == 0;
                     }
@@ -361,7 +399,7 @@ impl PhysicsModel {
         }
         rows! {
             "light_bodyid" lights bodyid "light_targetbodyid" lights targetbodyid "light_directional" lights directional
-            "light_castshadow" lights castshadow "light_pos" lights pos "light_dir" lights dir "light_pos0" lights pos0
+            "light_castshadow" lights castshadow "light_active" lights active "light_pos" lights pos "light_dir" lights dir "light_pos0" lights pos0
             "light_poscom0" lights poscom0 "light_dir0" lights dir0 "light_ambient" lights ambient "light_diffuse" lights diffuse
             "light_specular" lights specular "light_attenuation" lights attenuation "light_cutoff" lights cutoff
             "light_exponent" lights exponent

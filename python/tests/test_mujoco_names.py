@@ -95,7 +95,7 @@ def test_a_model_comes_from_a_file_and_its_names_are_found(tmp_path: Path) -> No
         (lambda m, d: m.joint("shoulder").axis.fill(0), ValueError, "read-only"),
         (lambda m, d: setattr(m.opt, "integrator", 4), AttributeError, "opt.integrator cannot be 4 here"),
         (lambda m, d: setattr(m.opt, "solver", 0), AttributeError, "opt.solver cannot be 0 here"),
-        (lambda m, d: setattr(m.opt, "enableflags", 2), AttributeError, "opt.enableflags cannot be 2 here"),
+        (lambda m, d: setattr(m.opt, "enableflags", 1), AttributeError, "opt.enableflags cannot be 1 here"),
         (lambda m, d: mujoco.MjModel(), TypeError, "from_xml_path"),
         (lambda m, d: mujoco.MjModel.from_xml_path("no_such.xml"), ValueError, "no_such.xml"),
         (lambda m, d: mujoco.MjModel.from_xml_string("<mujoco><nonsense/></mujoco>"), ValueError, "nonsense"),
@@ -125,6 +125,44 @@ def test_a_model_comes_from_a_file_and_its_names_are_found(tmp_path: Path) -> No
 def test_what_is_not_there_says_so(call: Callable[[Any, Any], object], error: type[Exception], text: str) -> None:
     with pytest.raises(error, match=text):
         call(*pair())
+
+
+def test_options_of_the_document_are_there_and_can_be_changed() -> None:
+    model, _ = pair(
+        """<mujoco><option noslip_iterations="3" actuatorgroupdisable="2">
+        <flag multiccd="enable" energy="enable" autoreset="disable" nativeccd="disable"/></option>
+        <worldbody><body><freejoint/><geom size=".1"/></body></worldbody></mujoco>"""
+    )
+    opt = model.opt
+    # MuJoCo 3.3.0's numbers
+    assert (opt.enableflags, opt.disableflags, opt.disableactuator, opt.noslip_iterations) == (18, 98304, 4, 3)
+    opt.enableflags |= 4
+    opt.disableflags &= ~65536
+    opt.disableactuator = 0
+    opt.noslip_iterations = 0
+    copied = copy.copy(model).opt
+    assert (copied.enableflags, copied.disableflags, copied.disableactuator, copied.noslip_iterations) == (
+        22,
+        32768,
+        0,
+        0,
+    )
+
+
+def test_reference_sites_and_data_of_programs_have_their_places() -> None:
+    model, data = pair(
+        """<mujoco><size nuserdata="7"/><worldbody><light active="false"/><camera orthographic="true"/>
+        <body><joint name="j"/><geom size=".1" contype="-1"/><site name="a"/><site name="b"/></body></worldbody>
+        <actuator><motor site="b" refsite="a"/><motor joint="j"/></actuator></mujoco>"""
+    )
+    assert model.actuator_trnid.tolist() == [[1, 0], [0, -1]]
+    assert (model.nuserdata, data.userdata.tolist()) == (7, [0.0] * 7)
+    data.userdata[2] = 5.0
+    assert copy.copy(data).userdata[2] == 5.0
+    mujoco.mj_resetData(model, data)
+    assert data.userdata[2] == 0.0
+    assert (model.light_active.tolist(), model.cam_orthographic.tolist()) == ([False], [True])
+    assert model.geom_contype.tolist() == [-1]
 
 
 def test_numbers_that_are_not_finite_and_runs_that_diverge_are_errors() -> None:

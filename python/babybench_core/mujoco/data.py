@@ -53,7 +53,7 @@ class MjData(Named):
         native = _native.PhysicsData(model._own)
         arrays = views(native.memory, [(name, shape) for name, _, shape in native.layout])
         clock = arrays.pop("time")
-        arrays.update(userdata=np.zeros(0))
+        arrays.update(userdata=np.zeros(model.nuserdata))
         own = self.__dict__
         own.update(arrays)
         own.update(
@@ -136,6 +136,7 @@ class MjData(Named):
     def __copy__(self) -> MjData:
         other = MjData(self.model)
         other._own.copy_from(self._own)
+        other.userdata[:] = self.userdata
         other.__dict__["_start"] = self._start
         return other
 

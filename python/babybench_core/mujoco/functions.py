@@ -217,6 +217,7 @@ def mj_resetData(m: MjModel, d: MjData) -> None:
     check(m, d)
     _anew(d)
     d._own.reset()
+    d.userdata[:] = 0
 
 
 def mj_resetDataKeyframe(m: MjModel, d: MjData, key: int) -> None:
@@ -230,6 +231,7 @@ def mj_resetDataKeyframe(m: MjModel, d: MjData, key: int) -> None:
     if key < 0:
         raise IndexError(f"there is no keyframe {key}; the model has {m.nkey}, numbered from 0")
     d._own.reset(int(key))
+    d.userdata[:] = 0
 
 
 def mj_fullM(m: MjModel, dst: _Floats, M: ArrayLike) -> None:
@@ -326,7 +328,10 @@ def mj_normalizeQuat(m: MjModel, qpos: _Floats) -> None:
             mju_normalize(qpos[q + 3 : q + 7])
 
 
-_STATE = ("time", "qpos", "qvel", "act", "qacc_warmstart", "ctrl", "qfrc_applied", "xfrc_applied", "eq_active")
+_STATE = (
+    *("time", "qpos", "qvel", "act", "qacc_warmstart", "ctrl", "qfrc_applied", "xfrc_applied", "eq_active"),
+    *("mocap_pos", "mocap_quat", "userdata"),
+)
 """The parts of a state, in the order of the bits of ``mjtState``."""
 
 
@@ -339,7 +344,8 @@ def _parts(d: MjData, spec: int) -> list[NDArray[Any]]:
 
 def mj_stateSize(m: MjModel, spec: int) -> int:
     """Returns how many numbers parts of a state have: a sum of ``mjtState``."""
-    sizes = (1, m.nq, m.nv, m.na, m.nv, m.nu, m.nv, 6 * m.nbody, m.neq)
+    moved = (3 * m.nmocap, 4 * m.nmocap)
+    sizes = (1, m.nq, m.nv, m.na, m.nv, m.nu, m.nv, 6 * m.nbody, m.neq, *moved, m.nuserdata)
     if not 0 <= int(spec) < 1 << mjtState.mjNSTATE:
         raise ValueError(f"{spec} is not a sum of parts of a state; see mjtState")
     return sum(size for bit, size in enumerate(sizes) if int(spec) >> bit & 1)

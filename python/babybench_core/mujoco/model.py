@@ -121,9 +121,11 @@ class MjOption:
             "cone",
             "jacobian",
             "disableflags",
+            "enableflags",
+            "noslip_iterations",
+            "disableactuator",
         )
         wholes = {name: int(settings[name]) for name in names}
-        wholes.update(enableflags=0, noslip_iterations=0, disableactuator=0)
         self.__dict__.update(_own=native, _floats=floats, _wholes=wholes)
 
     def __getattr__(self, name: str) -> Any:
@@ -244,7 +246,9 @@ class MjModel(Named):
         own.update(arrays)
         own["writable"] = tuple(arrays)
         own.update(ntex=len(names["texture"]), nmat=len(names["material"]), nnumeric=len(names["numeric"]))
-        own.update(ntext=len(names["text"]), nuserdata=0, nplugin=0, nwrap=len(extras["wrap_objid"]))
+        own.update(
+            ntext=len(names["text"]), nuserdata=int(settings["nuserdata"]), nplugin=0, nwrap=len(extras["wrap_objid"])
+        )
         own["opt"] = MjOption(native, floats, settings)
         stat = {name: settings[name] for name in ("extent", "meaninertia", "meanmass", "meansize")}
         own["stat"] = Settings("stat", {**stat, "center": _fixed(settings["center"], "stat.center")})
@@ -403,7 +407,7 @@ _DERIVED: dict[str, Callable[[MjModel], Any]] = {
     "pair_geom1": lambda m: m._compiled("pair_geom").reshape(-1, 2)[:, 0],
     "pair_geom2": lambda m: m._compiled("pair_geom").reshape(-1, 2)[:, 1],
     "exclude_signature": lambda m: m._compiled("exclude").reshape(-1, 2) @ np.array([1 << 16, 1], np.int32),
-    "actuator_trnid": lambda m: np.stack([m._compiled("actuator_trnid"), np.full(m.nu, -1, np.int32)], axis=1),
+    "actuator_trnid": lambda m: np.stack([m._compiled("actuator_trnid"), m._compiled("actuator_refid")], axis=1),
     "actuator_actnum": lambda m: (m._compiled("actuator_actadr") >= 0).astype(np.int32),
     "tendon_adr": lambda m: _starts(m.tendon_num),
     "numeric_size": lambda m: np.array([len(data) for data in m._extras["numeric_data"]], np.int32),
