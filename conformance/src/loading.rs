@@ -45,9 +45,10 @@ pub const SINGULAR: &str = "inertias that are singular";
 /// Returns why our loader rejects what MuJoCo accepts, if it is meant to.
 pub fn deliberate(error: &LoadError) -> Option<&'static str> {
     match &error.kind {
-        ErrorKind::UnknownElement(_) | ErrorKind::UnknownAttribute(_) => {
-            Some("elements and attributes that are not supported")
-        }
+        ErrorKind::UnknownElement(_)
+        | ErrorKind::UnknownAttribute(_)
+        | ErrorKind::Plugin { .. }
+        | ErrorKind::UnsupportedElement { .. } => Some("elements and attributes that are not supported"),
         ErrorKind::OutOfRange { .. } | ErrorKind::OutOfBounds { .. } => {
             Some("numbers outside their physical range, such as negative damping")
         }
@@ -67,9 +68,6 @@ pub fn deliberate(error: &LoadError) -> Option<&'static str> {
             Some("joints that move a body alike")
         }
         ErrorKind::Invalid(message) if message.starts_with("the inertia at qpos0 is singular") => Some(SINGULAR),
-        ErrorKind::Invalid(message) if message.starts_with("MuJoCo 3.3.0 multiplies it") => {
-            Some("sensors of no object and keyframes beside copies")
-        }
         ErrorKind::Invalid(message) if message.contains("has no distance from itself") => {
             Some("distances of boxes and meshes from themselves")
         }
@@ -86,7 +84,6 @@ pub fn deliberate(error: &LoadError) -> Option<&'static str> {
         ErrorKind::Invalid(message) if message.starts_with("MuJoCo 3.3.0 draws textures of three") => {
             Some("textures of other than three or four channels, which MuJoCo cannot draw")
         }
-        ErrorKind::Twin { .. } => Some("references that MuJoCo multiplies beside copies"),
         ErrorKind::BadWord { .. } => Some("kinds that are not supported"),
         ErrorKind::TooMuch { .. } => Some("limits on untrusted text"),
         _ => None,
@@ -197,14 +194,21 @@ pub fn distances(model: &babybench::Model, simulation: &Simulation) -> Vec<Dista
     all
 }
 
+/// Describes the first kind of elements whose names differ between the models; `None` if they agree.
+pub fn other_names(model: &babybench::Model, simulation: &Simulation) -> Option<String> {
+    let of_skins = ("skin", model.skins.iter().map(|skin| skin.name.clone()).collect());
+    let of_keys = ("key", model.keys.iter().map(|key| key.name.clone()).collect());
+    let mut all = names(model).into_iter().chain([of_skins, of_keys]);
+    all.find_map(|(kind, ours)| {
+        let theirs = simulation.names(kind);
+        (ours != theirs).then(|| format!("names of {kind}: {ours:?} instead of {theirs:?}"))
+    })
+}
+
 /// Describes the first difference between the models; `None` if they agree.
 pub fn difference(model: &babybench::Model, simulation: &Simulation) -> Option<String> {
-    let of_skins = ("skin", model.skins.iter().map(|skin| skin.name.clone()).collect());
-    for (kind, ours) in names(model).into_iter().chain([of_skins]) {
-        let theirs = simulation.names(kind);
-        if ours != theirs {
-            return Some(format!("names of {kind}: {ours:?} instead of {theirs:?}"));
-        }
+    if let Some(names) = other_names(model, simulation) {
+        return Some(names);
     }
     let far = |distance: &Distance| distance.error > distance.limit;
     distances(model, simulation)

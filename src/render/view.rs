@@ -119,7 +119,7 @@ pub struct Poses<'a> {
     pub geom_xpos: &'a [Vec3],
     /// Orientations of the geoms.
     pub geom_xmat: &'a [Mat3],
-    /// Sizes of the geoms, m, which a program may change: [`Params::geom_size`](crate::physics::Params::geom_size).
+    /// Sizes of the geoms, m, which a program may change: [`Params::geom_size`](mjcf_sim_physics::Params::geom_size).
     pub geom_size: &'a [Vec3],
     /// Positions of the sites.
     pub site_xpos: &'a [Vec3],

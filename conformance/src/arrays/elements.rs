@@ -65,10 +65,13 @@ pub(super) fn of_geoms(m: &Model) -> Named {
         ("geom_bodyid", ids(&m.geom_bodyid)),
         ("geom_pos", flat(&m.geom_pos)),
         ("geom_quat", flat(&m.geom_quat)),
-        ("geom_contype", m.geom_contype.iter().map(|&v| f64::from(v)).collect()),
+        (
+            "geom_contype",
+            m.geom_contype.iter().map(|&v| f64::from(v.cast_signed())).collect(),
+        ),
         (
             "geom_conaffinity",
-            m.geom_conaffinity.iter().map(|&v| f64::from(v)).collect(),
+            m.geom_conaffinity.iter().map(|&v| f64::from(v.cast_signed())).collect(),
         ),
         ("geom_condim", ids(&m.geom_condim)),
         ("geom_priority", m.geom_priority.iter().map(|&v| f64::from(v)).collect()),
@@ -113,6 +116,12 @@ pub fn unrecorded(m: &Model) -> Named {
         ("actuator_cranklength", m.actuator_cranklength.clone()),
         ("body_user", users(&m.body_user)),
         ("jnt_user", users(&m.jnt_user)),
+        ("cam_orthographic", flags(&m.cam_orthographic)),
+        (
+            "light_active",
+            m.lights.iter().map(|light| f64::from(u8::from(light.active))).collect(),
+        ),
+        ("nuserdata", vec![m.nuserdata as f64]),
         ("jnt_actfrclimited", flags(&m.jnt_actfrclimited)),
         ("jnt_actgravcomp", flags(&m.jnt_actgravcomp)),
         ("jnt_actfrcrange", flat(&m.jnt_actfrcrange)),

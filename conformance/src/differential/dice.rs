@@ -148,6 +148,10 @@ impl Dice {
         all.push(self.magnitude(1e-4, 0.1));
         all.extend((0..sliding).map(|_| self.magnitude(1e-5, 0.01)));
         let n = self.rng.usize(1..=all.len());
+        // rows without friction have nearly no regularisation
+        if self.chance(0.1) {
+            all.fill(0.0);
+        }
         numbers(&all[..n])
     }
 

@@ -51,8 +51,8 @@ struct Writer<'a> {
     hfield: Option<Node>,
     /// Meshes, with the elements that define them.
     meshes: Vec<Node>,
-    /// Whether there are copies, beside which MuJoCo multiplies sensors without an object.
-    copies: bool,
+    /// Materials, with and without opacity.
+    materials: Vec<Node>,
     tendons: Vec<String>,
     limited_tendons: Vec<String>,
     actuators: Vec<String>,
@@ -78,7 +78,7 @@ pub fn document(language: &Language, seed: u64) -> Node {
         cameras: Vec::new(),
         hfield: None,
         meshes: Vec::new(),
-        copies: false,
+        materials: Vec::new(),
         tendons: Vec::new(),
         limited_tendons: Vec::new(),
         actuators: Vec::new(),
@@ -118,6 +118,7 @@ impl Writer<'_> {
         let world = self.world();
         let mut asset = Node::new("asset");
         asset.children.append(&mut self.meshes);
+        asset.children.append(&mut self.materials);
         asset.children.extend(self.hfield.take());
         root.push_section(asset);
         root.children.push(world);
@@ -220,9 +221,48 @@ impl Writer<'_> {
             let body = self.body(0, false);
             world.children.push(body);
         }
+        self.row(&mut world);
         self.replicate(&mut world);
         self.frame(&mut world);
         world
+    }
+
+    /// Adds a row of bodies that touch each other, at times hardly, at times in a turned frame.
+    fn row(&mut self, world: &mut Node) {
+        if self.dice.chance(0.95) {
+            return;
+        }
+        let (shape, size) = (self.dice.pick(&["sphere", "sphere", "ellipsoid", "box"]), 0.1);
+        let step = 2.0 * size - self.dice.pick(&[0.0, 0.0, 1e-8, 1e-7, 1e-6]);
+        let start = self.dice.pick(&[0.0, 0.3, 3.0]);
+        let mut row = Node::new("frame");
+        if self.dice.chance(0.5) {
+            row.set(
+                "euler",
+                [self.dice.coordinate(3.0), "0".to_owned(), "0".to_owned()].join(" "),
+            );
+        }
+        for k in 0..self.dice.rng.usize(2..4) {
+            let (body, joint, geom) = (self.name("b"), self.name("j"), self.name("g"));
+            let place = numbers(&[start + step * k as f64, 0.0, 0.0]);
+            let mut node = Node::new("body").with("name", body.as_str()).with("pos", place);
+            let slide = Node::new("joint").with("name", joint.as_str()).with("type", "slide");
+            node.children.push(slide.with("axis", "1 0 0"));
+            let geom = Node::new("geom").with("name", geom).with("type", shape);
+            node.children.push(geom.with("size", numbers(&[size; 3])));
+            self.bodies.push(body);
+            row.children.push(node);
+        }
+        world.children.push(row);
+    }
+
+    /// Returns the name of a material.
+    fn material(&mut self) -> String {
+        let name = self.name("o");
+        let opacity = self.dice.pick(&["0", "1", "0.5"]);
+        let material = Node::new("material").with("name", name.as_str());
+        self.materials.push(material.with("rgba", format!("1 1 1 {opacity}")));
+        name
     }
 
     fn body(&mut self, depth: usize, moves: bool) -> Node {
@@ -282,12 +322,13 @@ impl Writer<'_> {
         body
     }
 
-    /// Adds copies of a geom or a body, to which nothing refers: their names are not those that are written.
+    /// Adds copies of a geom or a body, at times copies of copies. Others refer to what is in there by the names that are written, or to none of
+    /// it.
     fn replicate(&mut self, parent: &mut Node) {
         if self.dice.chance(0.95) {
             return;
         }
-        self.copies = true;
+        let named = self.dice.chance(0.5);
         let mut copies = Node::new("replicate");
         self.class(&mut copies, "childclass");
         self.language
@@ -306,12 +347,20 @@ impl Writer<'_> {
             self.body(DEPTH, false)
         };
         copies.children.push(held);
-        self.bodies.truncate(known.0);
-        self.joints.truncate(known.1);
-        self.geoms.truncate(known.2);
-        self.sites.truncate(known.3);
-        self.rounds.truncate(known.4);
-        self.cameras.truncate(known.5);
+        if self.dice.chance(0.2) {
+            let inner = std::mem::replace(&mut copies, Node::new("replicate"));
+            self.language
+                .dress(&mut copies, "worldbody/body/frame/replicate", false, &mut self.dice);
+            copies.children.push(inner);
+        }
+        if !named {
+            self.bodies.truncate(known.0);
+            self.joints.truncate(known.1);
+            self.geoms.truncate(known.2);
+            self.sites.truncate(known.3);
+            self.rounds.truncate(known.4);
+            self.cameras.truncate(known.5);
+        }
         let mut frame = Node::new("frame");
         frame.children.push(copies);
         parent.children.push(frame);

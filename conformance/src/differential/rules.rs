@@ -61,6 +61,7 @@ pub const WITHOUT_PHYSICS: &[&str] = &[
     "deformable",
     "custom",
     "keyframe",
+    "extension",
     "worldbody/body/camera",
     "worldbody/body/light",
 ];

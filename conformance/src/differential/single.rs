@@ -114,18 +114,12 @@ fn unbalance(document: &mut Node) {
     }
 }
 
-/// Makes copies of what a `<replicate>` holds, without the sensors that MuJoCo would multiply with them.
+/// Makes copies of what a `<replicate>` holds.
 fn make_copies(document: &mut Node, at: usize) {
     if let Some(node) = document.nth_mut(at)
         && node.get("count") == Some("0")
     {
         node.set("count", "2");
-    }
-    const OF_NOTHING: [&str; 4] = ["clock", "user", "e_potential", "e_kinetic"];
-    for section in document.children.iter_mut().filter(|node| node.name == "sensor") {
-        section
-            .children
-            .retain(|sensor| !OF_NOTHING.contains(&sensor.name.as_str()));
     }
 }
 

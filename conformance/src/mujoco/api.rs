@@ -9,7 +9,7 @@ use libloading::Library;
 pub(super) type Handle = *mut c_void;
 
 /// Elements that have names, with `mjtObj`'s numbers.
-pub const NAMED: [(&str, i32, &str); 13] = [
+pub const NAMED: [(&str, i32, &str); 14] = [
     ("skin", 11, "nskin"),
     ("body", 1, "nbody"),
     ("jnt", 3, "njnt"),
@@ -23,6 +23,7 @@ pub const NAMED: [(&str, i32, &str); 13] = [
     ("tendon", 18, "ntendon"),
     ("actuator", 19, "nu"),
     ("sensor", 20, "nsensor"),
+    ("key", 24, "nkey"),
 ];
 
 /// A loaded library. What its functions need is kept by the wrappers, which are safe.

@@ -9,6 +9,7 @@ use crate::differential::compare::Sides;
 use crate::differential::slack::Slack;
 use crate::live::one_step::TIGHT;
 use crate::live::speed::{copy_motion, cpu_time, quartiles};
+use crate::loading::other_names;
 use crate::measure::{Summary, max_abs, or_nan, relative};
 
 /// Episodes from which states are taken, and states of each, one every other step.
@@ -99,10 +100,11 @@ fn controls(model: &Model, rng: &mut Rng, ctrl: &mut [f64]) {
 pub fn figures(sides: &mut Sides) -> Figures {
     let model = sides.model.clone();
     let worst = sides.arrays().into_iter().map(|m| (m.error / m.limit, m.place));
-    let (arrays, farthest_array) = worst.fold(
-        (0.0, String::new()),
-        |worst, next| if next.0 > worst.0 { next } else { worst },
-    );
+    let none = match other_names(&model, sides.simulation()) {
+        Some(names) => (f64::INFINITY, names),
+        None => (0.0, String::new()),
+    };
+    let (arrays, farthest_array) = worst.fold(none, |worst, next| if next.0 > worst.0 { next } else { worst });
     let mut out = Figures {
         nv: model.nv,
         arrays,

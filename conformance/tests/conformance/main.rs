@@ -15,6 +15,7 @@ mod growth;
 mod hulls;
 mod included_files;
 mod kit;
+mod language;
 mod left_out;
 mod length_ranges;
 mod live_loader;
@@ -52,6 +53,7 @@ fn main() -> ExitCode {
         contact_geometry::trials(),
         differential::trials(),
         fused_bodies::trials(),
+        language::trials(),
         left_out::trials(),
         growth::trials(),
         hulls::trials(),

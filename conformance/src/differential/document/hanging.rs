@@ -110,6 +110,10 @@ impl Writer<'_> {
         }
         self.geoms.push(name);
         self.class(&mut geom, "class");
+        if self.dice.chance(0.08) {
+            let material = self.material();
+            geom.set("material", material);
+        }
         // a mesh has its size, and so has what is fitted to one
         if shape == "mesh" || self.dice.chance(0.03) {
             let mesh = self.mesh();

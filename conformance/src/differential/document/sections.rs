@@ -329,7 +329,6 @@ impl Writer<'_> {
                 _ => self.sites.clone(),
             };
             match attribute {
-                None if self.copies => continue,
                 None if kind == "user" => node.set("dim", self.dice.pick(&["0", "1", "3"])),
                 None => {}
                 Some("geom1") if self.between(&mut node) => {}
