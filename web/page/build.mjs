@@ -14,7 +14,7 @@ const out = process.argv[2];
 if (!out) throw new Error("Say where the page goes: node build.mjs OUT_DIR");
 mkdirSync(out, { recursive: true });
 
-/** The package lies beside the page and is not joined to it: it loads its module from where it is. */
+/** The package is beside the page and not bundled with it, because it loads its module from its own folder. */
 const packageBeside = {
   name: "package beside the page",
   setup(b) {
@@ -49,7 +49,7 @@ const licenses = { "three.js": "three/LICENSE", Inter: "@fontsource-variable/int
 const texts = Object.entries(licenses).map(([name, file]) => `${name}\n\n${readFileSync(join(here, "../node_modules", file), "utf8")}`);
 writeFileSync(join(out, "LICENSES.txt"), texts.join("\n\n----\n\n"));
 
-// what a visit needs is kept for the next one, by its contents; models and their module only after they were wanted
+// files that a visit needs are cached for the next one, by their contents; models and their module only after first use
 const files = readdirSync(out, { recursive: true, withFileTypes: true })
   .filter((f) => f.isFile())
   .map((f) => relative(out, join(f.parentPath, f.name)).replaceAll("\\", "/"))
@@ -59,7 +59,7 @@ const table = Object.fromEntries(files.map((f) => [f === "index.html" ? "" : f, 
 const sw = readFileSync(join(here, "src/sw.js"), "utf8").replace("const FILES = {};", `const FILES = ${JSON.stringify(table)};`);
 await build({ stdin: { contents: sw }, outfile: join(out, "sw.js"), minify: true, logLevel: "warning" });
 
-// as small as Brotli makes them, for hosts that serve what lies beside a file: it takes too long to be done at each request
+// compressed by Brotli, for hosts that serve such files; it takes too long for each request
 const pack = promisify(brotliCompress);
 const packed = readdirSync(out, { recursive: true, withFileTypes: true }).filter((f) => f.isFile() && /\.(html|js|css|wasm|onnx)$/.test(f.name));
 await Promise.all(packed.map(async (f) => {

@@ -1,5 +1,5 @@
 // Leaves out of three.js headsets, environment maps and materials that the page does not use. esbuild reads
-// three.js from its sources, where these stand in files of their own.
+// three.js from its sources, where these are separate files.
 import { readFileSync, realpathSync } from "node:fs";
 import { join } from "node:path";
 
@@ -14,7 +14,7 @@ const STUBS = {
 };
 const UNUSED_SHADERS = ["meshtoon", "meshmatcap", "meshphysical", "meshnormal", "sprite", "points", "linedashed", "equirect", "cube", "backgroundCube", "vsm"];
 
-/** Parts of shaders for what no material of the page has: bones, maps of bumps and reflections, planes that clip. */
+/** Parts of shaders for features that no material of the page has: bones, bump and reflection maps, clipping planes. */
 const UNUSED_PARTS = /ShaderChunk[\\/](aomap|lightmap|envmap|bumpmap|displacementmap|emissivemap|metalnessmap|roughnessmap|gradientmap|normalmap|morph|skin|batching|clearcoat|iridescence|clipping_planes|alphahash|logdepthbuf|map_particle|dithering)\w*\.glsl\.js$/;
 const UNUSED_CHUNKS = ["lights_physical_pars_fragment", "lights_physical_fragment", "transmission_pars_fragment", "transmission_fragment", "iridescence_fragment", "cube_uv_reflection_fragment", "lights_toon_pars_fragment", "lights_toon_fragment"];
 
@@ -40,7 +40,7 @@ export function lean(folder) {
 }
 
 /**
- * Takes comments, indentation and empty lines out of a shader; line breaks stay, as directives need them.
+ * Removes comments, indentation and empty lines from a shader. Line breaks remain, because directives need them.
  * @param {string} text
  */
 function bare(text) {

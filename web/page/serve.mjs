@@ -8,7 +8,7 @@ import { fileURLToPath } from "node:url";
 import { brotliCompressSync, constants, gzipSync } from "node:zlib";
 
 const TYPES = { ".html": "text/html; charset=utf-8", ".js": "text/javascript", ".mjs": "text/javascript", ".css": "text/css", ".wasm": "application/wasm", ".json": "application/json", ".webmanifest": "application/manifest+json", ".svg": "image/svg+xml", ".png": "image/png", ".woff2": "font/woff2", ".txt": "text/plain; charset=utf-8" };
-/** What does not shrink. */
+/** Types that do not compress. */
 const PACKED = new Set([".woff2", ".png"]);
 const PACKERS = { br: (bytes) => brotliCompressSync(bytes, { params: { [constants.BROTLI_PARAM_QUALITY]: 5 } }), gzip: (bytes) => gzipSync(bytes) };
 
@@ -63,7 +63,7 @@ function files(root, under) {
   };
 }
 
-/** Reads the path of an address; nothing if it is none. @param {string} url */
+/** Reads the path of an address; null if it is invalid. @param {string} url */
 function pathOf(url) {
   try {
     const path = decodeURIComponent(new URL(url, "http://x").pathname);

@@ -26,7 +26,7 @@ export function unbase64(text) {
 /**
  * @param {Uint8Array<ArrayBuffer>} bytes
  * @param {CompressionStream | DecompressionStream} stream
- * @param {number} most bytes that may come out
+ * @param {number} most bytes of output allowed
  * @returns {Promise<Uint8Array<ArrayBuffer>>}
  */
 export async function through(bytes, stream, most) {
@@ -45,7 +45,7 @@ export async function through(bytes, stream, most) {
 export const pack = (bytes) => through(bytes, new CompressionStream("deflate-raw"), Infinity);
 
 /** @typedef {import("./room.js").Files} Files */
-/** What a link holds: a state, where it goes on from, and the MIMo beside him, the network that moves MIMo, the files of a room of one's own. */
+/** The contents of a link: a state, its snapshot, the second MIMo, the network that moves MIMo, the files of a custom room. */
 /** @typedef {{ state: Record<string, any>, snapshot: Uint8Array<ArrayBuffer> | null, second: Uint8Array<ArrayBuffer> | null, network: Uint8Array<ArrayBuffer> | null, room: Files | null }} Link */
 
 /** @param {Files} files */

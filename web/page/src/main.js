@@ -69,7 +69,7 @@ function hint(app) {
 }
 
 /**
- * Shows the scene and its time alone, for a frame in another page: `?embed`. A link leads to the whole page as it is there.
+ * Shows only the scene and its time, for a frame in another page: `?embed`. A link leads to the whole page in the same state.
  * @param {App} app
  */
 function embed(app) {

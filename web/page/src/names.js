@@ -61,7 +61,7 @@ export const TASKS = {
 /** The behaviors of BabyBench. @type {Record<string, string>} */
 export const BEHAVIORS = { self_touch: "Self-touch", hand_regard: "Hand regard", none: "None" };
 
-/** The parts of the body in the order of a person, with their names. */
+/** The parts of the body from head to feet, with their names. */
 export const PARTS = /** @type {const} */ ({
   head: "Head",
   eyes: "Eyes",

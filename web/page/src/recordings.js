@@ -6,15 +6,15 @@ export class Recordings {
   /** @param {import("./app.js").App} app */
   constructor(app) {
     this.app = app;
-    /** What was replayed last. */
+    /** The last replayed recording. */
     /** @type {Recording | null} */
     this.last = null;
   }
 
   /**
-   * Asks before something ends a recording that runs. What was recorded is kept.
+   * Asks before something ends a running recording. The recording is kept.
    * @param {string} what
-   * @returns {Promise<boolean>} whether to go on
+   * @returns {Promise<boolean>} whether to continue
    */
   async consent(what) {
     if (this.app.moment?.recorded == null) return true;
@@ -35,7 +35,7 @@ export class Recordings {
 
   /**
    * @param {Recording} recording
-   * @param {boolean} full whether it ended by itself
+   * @param {boolean} full whether it ended on its own
    */
   keep(recording, full) {
     this.app.emit("tape", { recording });

@@ -1,13 +1,13 @@
-// A room of one's own: the files that somebody drops, and which of them is the scene.
+// Custom rooms: the dropped files, and which of them is the scene.
 import { unzip } from "./zip.js";
 
 /** Most that the files of a room may have, bytes and files: the library reads no larger one. */
 const [MOST, COUNT] = [64 << 20, 2000];
 
 /** @typedef {Record<string, Uint8Array<ArrayBuffer>>} Files by path */
-/** @typedef {{ files: Files, scenes: string[], yaml: string | null }} Room scenes that MIMo can live in, and the configuration that lies beside them */
+/** @typedef {{ files: Files, scenes: string[], yaml: string | null }} Room scenes that include MIMo, and the configuration beside them */
 
-/** What systems leave in folders. @param {string} path */
+/** Files that operating systems leave in folders. @param {string} path */
 const hidden = (path) => path.split("/").some((part) => part.startsWith(".") || part === "__MACOSX");
 
 /** Takes files until there are too many. */
@@ -43,7 +43,7 @@ class Basket {
 }
 
 /**
- * Collects a folder and what is in it.
+ * Collects the files of a folder.
  * @param {FileSystemEntry} entry
  * @param {Basket} basket
  * @returns {Promise<void>}

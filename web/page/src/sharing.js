@@ -8,7 +8,7 @@ import { WorldError } from "./world.js";
 /** @typedef {import("./types").PageState} PageState */
 /** @typedef {import("./link.js").Link} Link */
 
-/** Largest network that goes into a link, bytes as it is packed: messengers take links of a hundred thousand characters. */
+/** Largest network in a link, packed bytes: messengers accept links of a hundred thousand characters. */
 const LARGEST = 64 << 10;
 /** Largest room that outlives a reload, bytes: browsers keep a few megabytes. */
 const REMEMBERED = 4 << 20;
@@ -30,11 +30,11 @@ export class Sharing {
       this.later = setTimeout(() => this.remember(), LATER);
     });
     addEventListener("pagehide", () => this.remember());
-    // an address that was pasted here, too; never from one that the page itself writes
+    // also from a pasted address, but never from one that the page wrote itself
     addEventListener("popstate", () => app.attempt(() => this.follow()));
   }
 
-  /** What there is, for a link: without what is as it always is. */
+  /** The state for a link, without default values. */
   get state() {
     const { state, scene, stage, model } = this.app;
     const network = (state.policy === "model" || state.twin?.policy === "model") && model ? { name: model.name, size: model.bytes.length, url: model.url } : undefined;
@@ -52,7 +52,7 @@ export class Sharing {
     return JSON.stringify({ ...this.state, view: null });
   }
 
-  /** Keeps what there is in this entry of the history, for a reload; a link that no longer says it becomes the entry before. */
+  /** Stores the state in this entry of the history, for a reload. An outdated link becomes the previous entry. */
   remember() {
     if (!this.app.scene || this.opening || window !== top) return; // the history of a frame is that of the page around it
     if (this.linked !== null && this.linked === this.key) return;
@@ -66,7 +66,7 @@ export class Sharing {
     this.linked = null;
   }
 
-  /** Starts from the address: a link, what this entry of the history keeps, or `?config=`; then `?policy=` and `?recording=`. */
+  /** Starts from the address: a link, the state of this entry of the history, or `?config=`; then `?policy=` and `?recording=`. */
   async start() {
     const query = new URLSearchParams(location.search);
     const opened = await this.arrive();
@@ -169,10 +169,10 @@ export class Sharing {
   }
 
   /**
-   * Builds a world of a state from outside, without the settings that the library refuses.
+   * Builds a world from an external state, without the settings that the library refuses.
    * @param {PageState} state
-   * @param {Link} found where it goes on from
-   * @param {string[]} refused what is left out is added
+   * @param {Link} found the snapshot and its parts
+   * @param {string[]} refused gets the settings that are left out
    */
   async makeOf(state, { snapshot, second }, refused) {
     const { app } = this;
@@ -221,7 +221,7 @@ export class Sharing {
 
   /**
    * @param {boolean} withMoment
-   * @returns {Promise<{ href: string, lacks: string }>} the address, and what it cannot hold
+   * @returns {Promise<{ href: string, lacks: string }>} the address, and the parts that it cannot hold
    */
   async made(withMoment) {
     const { app, state } = this;
@@ -240,7 +240,7 @@ export class Sharing {
   }
 
   /**
-   * Puts a link into the address bar: a moment becomes an entry of the history.
+   * Writes a link to the address bar. A moment becomes an entry of the history.
    * @param {string} href
    * @param {boolean} moment
    */

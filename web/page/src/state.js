@@ -26,7 +26,7 @@ const isObject = (/** @type {unknown} */ v) => typeof v === "object" && v !== nu
 const isNumber = (/** @type {unknown} */ v) => typeof v === "number" && Number.isFinite(v);
 const isSetting = (/** @type {unknown} */ v) => v === null || typeof v === "string" || typeof v === "boolean" || isNumber(v) || (Array.isArray(v) && v.every((x) => typeof x === "string"));
 
-/** What each part may be. @type {Record<keyof PageState, (v: any) => boolean>} */
+/** The valid values of each part. @type {Record<keyof PageState, (v: any) => boolean>} */
 const ALLOWED = {
   settings: isObject,
   seed: (v) => Number.isInteger(v) && v >= 0 && v <= MOST_SEED,

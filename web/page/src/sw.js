@@ -1,5 +1,5 @@
-// Keeps the page's files, so that it opens without a network and fetches nothing twice, whatever the host says of caching. A file is known by
-// its contents: a page that was built anew has another table, and fetches what differs.
+// Caches the page's files, so that it opens without a network and fetches nothing twice, whatever the host's caching
+// headers. Files are identified by their contents: a rebuilt page has another table, and fetches what differs.
 /// <reference lib="webworker" />
 const scope = /** @type {ServiceWorkerGlobalScope} */ (/** @type {unknown} */ (self));
 const CACHE = "babybench files";
@@ -10,7 +10,7 @@ const FOLDER = new URL("./", location.href).href;
  */
 const FILES = {};
 
-/** Where a file with these contents is kept. @param {string} name */
+/** The cache key of a file with these contents. @param {string} name */
 const place = (name) => `${FOLDER}${name}?${FILES[name].hash}`;
 
 /** @param {Response} answer */
@@ -38,7 +38,7 @@ async function get(name) {
   return fetch(FOLDER + name); // the host changes files, or has newer ones
 }
 
-/** Forgets files of other builds, and what earlier versions of this kept. */
+/** Deletes files of other builds, and caches of earlier versions. */
 async function tidy() {
   for (const key of await caches.keys()) if (key !== CACHE) await caches.delete(key);
   const cache = await caches.open(CACHE);

@@ -16,7 +16,7 @@ export class WorldError extends Error {
 
 /** Milliseconds after which a worker that does not answer counts as hung. */
 const PATIENCE = 10_000;
-/** Milliseconds between looks at whether it answers. */
+/** Milliseconds between checks that the worker answers. */
 const LOOK = 1000;
 
 export class World {

@@ -10,7 +10,7 @@ const KEYS = { ArrowLeft: -ARROW, ArrowDown: -ARROW, ArrowRight: ARROW, ArrowUp:
 /** @typedef {import("../types").Moment} Moment */
 
 /**
- * Says where time is: nothing in the present.
+ * Shows the current moment; empty in the present.
  * @param {Moment} moment
  * @param {number} seconds of a step
  * @param {number} [at] where, in steps
@@ -37,7 +37,7 @@ export function past(app) {
     const now = goal ?? at;
     Object.assign(line, { min: Math.min(from, to - 1), max: to, value: now, disabled: m.recorded !== null || to <= from });
     line.style.setProperty("--at", `${to > from ? (100 * (now - from)) / (to - from) : 100}%`);
-    // who listens hears where time is when it stands, not ten times a second
+    // screen readers announce the moment when time is paused, not ten times a second
     if (!m.playing || !m.line.recording) line.setAttribute("aria-valuetext", m.playing && now < to ? "in the past" : words(m, now));
   };
   const go = (/** @type {number} */ to) => {

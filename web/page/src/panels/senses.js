@@ -29,7 +29,7 @@ export function senses(app) {
  * @param {(settings: () => Settings) => void} change
  */
 function eyes(app, change) {
-  /** Whether vision is on for these two alone. */
+  /** Whether vision is on only for these two. */
   let lent = false;
   const see = (/** @type {Settings} */ settings) => change(() => {
     const { vision_active, vision_acuity, vision_foveation } = { ...app.settings, ...settings };

@@ -60,7 +60,7 @@ function scene(app) {
   const isTask = (/** @type {unknown} */ name) => String(name) in TASKS;
   const choose = (/** @type {string} */ v) => {
     const { behavior, age } = app.settings;
-    // what another task left would stand against the defaults of this one
+    // settings of another task would conflict with the defaults of this one
     const kept = { behavior: v, age, vision_active: false, max_episode_steps: 12_000 };
     if (isTask(v)) attempt(() => app.begin(kept));
     else if (isTask(behavior)) attempt(() => app.begin({ ...kept, scene: "crib" }));
@@ -244,7 +244,7 @@ function field(key, changed) {
   if (key.options) {
     const select = el("select", { id, onchange: () => changed(select.value) }, ...key.options.map((c) => el("option", { value: c }, c)));
     return { root: el("div", { className: "field" }, el("label", { htmlFor: id }, key.name), select, hint), show: (v) => {
-      // a room of one's own is none of the options
+      // a custom room is not one of the options
       select.value = String(v);
       if (select.value !== String(v)) select.append(el("option", { value: v, selected: true }, String(v)));
     } };

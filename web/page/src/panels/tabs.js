@@ -19,7 +19,7 @@ export function tabs(panels, shown) {
     panel.setAttribute("aria-labelledby", button.id);
     return button;
   });
-  /** How far down each tab was read: the panel scrolls, or the page on phones. */
+  /** Scroll position of each tab: the panel scrolls, or the page on phones. */
   /** @type {Map<string, [number, number]>} */
   const read = new Map();
   /** @param {string} title */

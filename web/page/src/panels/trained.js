@@ -1,8 +1,8 @@
-// Policies that were trained for MIMo's tasks and lie beside the page: each starts its task and moves him.
+// Policies trained for MIMo's tasks, in files beside the page. Each starts its task and moves him.
 import { el } from "../dom.js";
 import { button, card } from "./controls.js";
 
-/** What each one does, its task, its file, his age where it is another one than 18 months. @type {[string, string, string, number?][]} */
+/** Its action, its task, its file, and MIMo's age if it is not 18 months. @type {[string, string, string, number?][]} */
 export const TRAINED = [
   ["Reaches for the ball", "reach", "policies/reach.onnx"],
   ["Touches a part of himself", "selfbody", "policies/selfbody.onnx"],

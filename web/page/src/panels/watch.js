@@ -38,7 +38,7 @@ function eyes(app, event, title) {
   return section;
 }
 
-/** Brightness, of 255, that differs within a picture in which something is to be seen. */
+/** Difference in brightness, of 255, within a picture that is not plain. */
 const SOMETHING = 30;
 
 /**
@@ -55,7 +55,7 @@ function plain(pixels) {
 }
 
 /**
- * Says what lies between the world and the eyes.
+ * Describes the transforms between the world and the eyes.
  * @param {import("../types").Settings} s
  * @param {number} late s
  */

@@ -1,4 +1,4 @@
-// Everything visible of the model: a few instanced meshes, placed anew with each frame.
+// Everything visible of the model, as a few instanced meshes that each frame places again.
 import { Color, Group, InstancedMesh, Matrix4, SRGBColorSpace } from "three";
 import { geometry, shapeKey, stretch } from "./shapes.js";
 import { material, mean, texture } from "./materials.js";
@@ -61,7 +61,7 @@ export class Bodies extends Group {
   }
 
   /**
-   * Whether something stands around MIMo and may hide it: the bars of the crib.
+   * Whether a body surrounds MIMo and may hide him, like the bars of the crib.
    * @param {Drawable} d
    */
   furniture(d) {

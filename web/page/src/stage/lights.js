@@ -60,7 +60,7 @@ export class Studio extends Group {
   }
 
   /**
-   * Keeps the light, and the best of its shadows, where one looks.
+   * Keeps the light, and the sharpest part of its shadows, at the viewed point.
    * @param {import("three").Vector3} at
    */
   aim(at) {

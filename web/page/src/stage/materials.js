@@ -49,7 +49,7 @@ export function texture(faces, plain) {
   return t;
 }
 
-/** Tiles of a drawable above which an image is noise: its mean stands for it. */
+/** Number of tiles of a drawable above which an image is noise and its mean replaces it. */
 const TILES = 20;
 
 /**
@@ -66,12 +66,12 @@ export function mean(d, faces) {
   return /** @type {[number, number, number]} */ (sum.map((v) => (4 * v) / pixels.length / 255));
 }
 
-/** What stands between the eye and MIMo turns to glass. */
+/** Bodies between the eye and MIMo become transparent. */
 const GLASS = /* glsl */ `
   #include <opaque_fragment>
   gl_FragColor.a *= mix(0.1, 1.0, smoothstep(focus - 0.5, focus - 0.22, vViewPosition.z));`;
 
-/** Light that grazes skin comes out warm: a thin rim, and a soft turn into the shade. */
+/** Grazing light on skin is warm: a thin rim, and a soft transition into shade. */
 const RIM = /* glsl */ `
   float rim = pow(1.0 - saturate(dot(normalize(vViewPosition), normal)), 3.0);
   outgoingLight += diffuseColor.rgb * rim * rimLight;

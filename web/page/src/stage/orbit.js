@@ -1,7 +1,7 @@
 // A camera that circles a point: turned, moved and brought closer by pointer, wheel and keys.
 import { PerspectiveCamera, Vector3 } from "three";
 
-/** The camera stays above what it looks at: below a mattress or a floor there is nothing to see. */
+/** The camera stays above the viewed point, because below a mattress or a floor nothing is visible. */
 const LOW = 0.03;
 const HIGH = 1.5;
 
@@ -14,7 +14,7 @@ export class Orbit {
     this.elevation = 0.5;
     this.distance = 2;
     this.follow = true;
-    /** Where the camera looks relative to what it follows. */
+    /** The viewed point relative to the followed body. */
     this.offset = new Vector3();
   }
 

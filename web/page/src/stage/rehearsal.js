@@ -1,5 +1,5 @@
-// Shaders take long to compile, longer than the world to load. So they are compiled meanwhile, on things that look like
-// those of the scenes and are never drawn.
+// Compiling shaders takes longer than loading the world. They are compiled meanwhile, for objects like those of the scenes
+// that are never drawn.
 import { Group } from "three";
 import { Bodies } from "./bodies.js";
 import { Skin } from "./skin.js";

@@ -72,7 +72,7 @@ void main() {
   #include <colorspace_fragment>
 }`;
 
-/** Numbers of a sensor that glows: where it is, its normal and spacing, its body, its force. */
+/** Numbers of a glowing sensor: position, normal and spacing, body, force. */
 const GLOWING = { at: 3, normalSpacing: 4, body: 1, felt: 1 };
 const STRIDE = 9;
 
@@ -138,7 +138,7 @@ export class Skin extends Group {
     };
     this.all = pass(this.still, 0, false);
     pass(this.glows, 1, false);
-    // what lies under a hand or below the back shines through faintly
+    // sensors under a hand or below the back shine through faintly
     pass(this.glows, 0.22, true);
     this.visible = count > 0;
   }

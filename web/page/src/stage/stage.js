@@ -59,7 +59,7 @@ export class Stage {
     this.glow = true;
     this.jump = true;
     this.shown = 0;
-    /** The stage beside this one, which looks from the same side; and the view that both last had. */
+    /** The stage beside this one, which has the same view; and the last view of both. */
     /** @type {Stage | null} */
     this.peer = null;
     this.agreed = { view: "" };
@@ -200,7 +200,7 @@ export class Stage {
   }
 
   /**
-   * Looks from where another stage looks, and draws what it draws.
+   * Copies the view of another stage, and draws.
    * @param {Stage} other
    */
   pair(other) {
@@ -213,7 +213,7 @@ export class Stage {
     other.agreed.view = other.orbit.view.join();
   }
 
-  /** Lets the stage beside this one look where this one was turned. */
+  /** Copies this stage's view to the stage beside it. */
   agree() {
     const view = this.orbit.view.join();
     if (!this.peer || view === this.agreed.view) return;
@@ -263,7 +263,7 @@ export class Stage {
 const FELT = [0.8, 0.76, 0.71, 1];
 
 /**
- * Leaves out what the page has its own of, and gives the rug a look that nobody mistakes.
+ * Leaves out what the page replaces, and gives the rug a distinct look.
  * @param {import("../types").Drawable} d
  * @returns {import("../types").Drawable}
  */
@@ -276,7 +276,7 @@ function ofThePage(d) {
 const GREY = "0.5,0.5,0.5,1";
 
 /**
- * Leaves out the floor of a room of one's own where it has no colours: the page has a ground.
+ * Leaves out the floor of a custom room without colours, because the page has a ground.
  * @param {import("../types").Drawable} d
  * @returns {import("../types").Drawable}
  */

@@ -1,10 +1,10 @@
-// The pace of a world: as many steps as the time that has passed asks for, however long frames take to be drawn.
+// The pace of a world: as many steps as the elapsed time requires, however long frames take.
 
-/** Longest stretch of steps without a look at messages, ms. */
+/** Longest run of steps between checks for messages, ms. */
 export const BUDGET = 24;
-/** Milliseconds between looks at the time. */
+/** Milliseconds between checks of the time. */
 const BEAT = 8;
-/** Seconds that the shown pace looks back. */
+/** Seconds over which the shown pace is averaged. */
 const MEMORY = 0.5;
 
 export class Clock {
@@ -55,7 +55,7 @@ export class Clock {
         this.step();
         done++;
       }
-      // beats without a step count, too: steps may be longer than they
+      // beats without a step count, too, because steps may be longer than beats
       const share = 1 - Math.exp(-passed / MEMORY);
       if (passed > 0) this.pace += share * ((done * this.seconds()) / passed - this.pace);
       if (!done) return;

@@ -194,7 +194,7 @@ export class PageEnv {
     return this.joints.map((_, i) => on.has(i));
   }
 
-  /** Whether locks were set or taken off since the environment was made. */
+  /** Whether locks were set or removed since the environment was made. */
   get locksDiffer() {
     return this.locked().join() !== this.ownLocks;
   }

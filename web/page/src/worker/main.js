@@ -54,7 +54,7 @@ function failed(name, e) {
 }
 
 /**
- * What stops the clock; time stands until somebody lets it go on.
+ * Stops the clock on an error; time is paused until the user continues.
  * @param {unknown} e
  */
 function stopped(e) {
@@ -63,7 +63,7 @@ function stopped(e) {
 }
 
 /**
- * Makes an environment and brings it to where it starts.
+ * Creates an environment and brings it to its start.
  * @param {{ settings: import("../types").Settings | string, assets?: Record<string, Uint8Array>, seed: number, locks: string[], snapshot: Uint8Array | null }} d
  */
 function build(d) {
@@ -80,7 +80,7 @@ function build(d) {
 }
 
 /**
- * Makes the world beside the one that lives: with its settings, but for those of its own, and its time.
+ * Creates the world beside the running one, with its settings except its own, and its time.
  * @param {LiveWorld} beside
  * @param {any} d as for `make`
  */
@@ -100,11 +100,11 @@ async function pair(beside, d) {
   return world;
 }
 
-/** What the page can ask for, by name. */
+/** The requests of the page, by name. */
 /** @type {Record<string, (...args: any[]) => unknown>} */
 const answers = {
   load: () => load(),
-  /** Loads ahead of time; who asks for it later hears what went wrong. */
+  /** Loads ahead of time. A later request reports errors. */
   warm: () => load().then(() => {}, () => {}),
 
   /** @param {{ settings: import("../types").Settings | string, assets?: Record<string, Uint8Array>, locks: string[], snapshot: Uint8Array | null, network?: Uint8Array, twin?: import("../types").Twin | null, second?: Uint8Array | null } & Movement} d */

@@ -7,7 +7,7 @@ const KEPT = 30;
 /** Most snapshots of a recording, which is kept whole. */
 const MOST = 128;
 
-/** @typedef {{ bytes: Uint8Array, truncated: boolean }} Key a snapshot, and what else belongs to its moment */
+/** @typedef {{ bytes: Uint8Array, truncated: boolean }} Key a snapshot, and other data of its moment */
 /** @typedef {{ body: number, force: [number, number, number], at: [number, number, number] }} Pull */
 /**
  * Steps between two snapshots. `draws` tells where an action was drawn by chance; `cut` whether something other than a step led to its
@@ -28,7 +28,7 @@ export class Past {
     /** The current moment of the world, and the latest known one; steps since the beginning. */
     this.at = 0;
     this.last = recording?.steps ?? 0;
-    /** Whether these are the steps of a recording, and nothing beside. */
+    /** Whether these are only the steps of a recording. */
     this.recording = recording;
     /** Whether something other than a step has changed the world since the last step. */
     this.changed = false;
@@ -61,7 +61,7 @@ export class Past {
   }
 
   /**
-   * Prepares the next step: where a stretch begins, a snapshot is taken.
+   * Prepares the next step, with a snapshot at the start of a stretch.
    * @param {() => Key} save
    */
   begin(save) {
@@ -115,10 +115,10 @@ export class Past {
   }
 
   /**
-   * Where a way to a moment starts: the world itself, if that is nearer than a snapshot. A snapshot of the very moment is used only where no
-   * step leads there, as a step brings up to date what a snapshot does not hold.
+   * Returns the start of the path to a moment: the world itself, if it is nearer than a snapshot. A snapshot of the moment
+   * itself is used only if no step leads there, because a step updates what a snapshot does not hold.
    * @param {number} target
-   * @returns {Stretch | null} nothing for the world as it is
+   * @returns {Stretch | null} null for the current world
    */
   from(target) {
     const reached = this.stretches.filter((s) => s.key);

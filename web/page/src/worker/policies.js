@@ -7,7 +7,7 @@
 const STEP = 0.005;
 
 /**
- * Returns a number in [-1, 1) that follows from three whole numbers and looks random.
+ * Returns a pseudorandom number in [-1, 1) from three whole numbers.
  * @param {number} seed
  * @param {number} which
  * @param {number} when

@@ -31,7 +31,7 @@ export class LiveWorld {
     /** @type {Tape | null} */
     this.tape = null;
     this.past = new Past(env.actions.length, env.seconds);
-    /** Where time is on its way to, if somebody went back or forth. */
+    /** The moment to which time moves, after a jump. */
     /** @type {number | null} */
     this.goal = null;
     /** @type {Promise<void> | null} */
@@ -50,7 +50,7 @@ export class LiveWorld {
     this.truncated = false;
     /** Whether a task has ended, so that only its next episode can continue. */
     this.over = false;
-    /** The world beside this one, whose time this one's clock is, too. */
+    /** The world beside this one, which follows this one's clock. */
     /** @type {LiveWorld | null} */
     this.twin = null;
     this.clock = clock ?? new Clock(
@@ -89,7 +89,7 @@ export class LiveWorld {
     for (const [i, v] of Object.entries(held)) if (Number(i) < action.length) action[Number(i)] = v;
   }
 
-  /** One step of the clock, which stands when an episode is over. */
+  /** One step of the clock, which pauses at the end of an episode. */
   tick() {
     if (this.over || this.twin?.over) return this.clock.play(false);
     this.step();
@@ -114,7 +114,7 @@ export class LiveWorld {
     if (this.twin) throw new Error("A recording is of one MIMo: end the comparison first.");
   }
 
-  /** Lets go of the memory. */
+  /** Frees the memory. */
   free() {
     this.env.free();
     this.model?.free();
@@ -204,7 +204,7 @@ export class LiveWorld {
   }
 
   /**
-   * Goes to a moment of the past, or of the recording that plays, where time then stands.
+   * Goes to a moment of the past, or of the recording that plays, where time pauses.
    * @param {number} target steps, as in a moment's `line`
    * @returns {Promise<unknown>}
    */
@@ -219,7 +219,7 @@ export class LiveWorld {
     return Promise.all([this.travelling, this.twin?.seek(target)]);
   }
 
-  /** Goes where time shall be, with looks at messages, which may change that. */
+  /** Moves time to its target, and checks messages, which may change the target. */
   async travel() {
     const { past } = this;
     let towards = -1;
@@ -259,7 +259,7 @@ export class LiveWorld {
   }
 
   /**
-   * Tells when an episode is over; a task stops there, so that its return does.
+   * Reports the end of an episode. A task stops there, and so does its return.
    * @param {boolean} over
    */
   end(over) {
