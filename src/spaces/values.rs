@@ -10,7 +10,7 @@ pub(crate) trait Number: Copy + Default + 'static {
     /// Returns values of this type; `None` for those of another.
     fn of(values: Values<'_>) -> Option<&[Self]>;
 
-    /// Returns values of this type, to be written; `None` for those of another.
+    /// Returns values of this type, for writing; `None` for another type.
     fn of_mut(values: ValuesMut<'_>) -> Option<&mut [Self]>;
 }
 
