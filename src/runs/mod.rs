@@ -54,9 +54,9 @@ mod replay;
 mod scene_file;
 mod training;
 
+pub use crate::files::Owner;
 pub use logs::{EvaluationLog, TrainingTotals};
 pub use logs::{LogError, TrainingLog, read_training};
-pub use crate::files::Owner;
 pub use many::RunVector;
 #[cfg(feature = "npz")]
 pub use motion::{Motion, MotionError, Played, Playing, play_motion};

@@ -272,7 +272,7 @@ fn engine_of_copies(count: i32) -> SoftEngine {
 
 #[test]
 fn what_refers_to_what_is_copied_is_copied() {
-    let model = |text: &str| compile(outcome(text).expect(text)).expect(text);
+    let model = |text: &str| engine(text).model().clone();
     let copies = "<worldbody><replicate count='2'><geom size='.1'/></replicate></worldbody>";
     // what refers to nothing is copied with every copy, and so are its own copies
     let clocks = model(&format!("<mujoco>{copies}<sensor><clock name='c'/></sensor></mujoco>"));

@@ -7,10 +7,9 @@ use super::fuse::{Place, places};
 use super::geom::{check_size, compile_geom, place};
 use super::geometry::{Solid, merge, orientation, principal};
 use super::joint::compile_joints;
-use crate::math::{MINVAL, Quat, Vec3, add, mat_vec, quat_to_mat};
 use crate::document::{Body, BodyFrame, Copied, Document, Frame, Geom, Orientation, Site, Tri};
 use crate::error::LoadError;
-use crate::settings::single;
+use crate::math::{MINVAL, Quat, Vec3, add, mat_vec, quat_to_mat};
 use crate::model::Arrays;
 use crate::settings::single;
 

@@ -2,13 +2,11 @@
 
 use std::collections::BTreeMap;
 
-use crate::math::{Quat, Vec3, add, mat_vec, quat_mul, quat_rotate, quat_to_mat};
 use crate::compile::hfield::hfield_name;
 use crate::compile::mesh::mesh_name;
 use crate::document::{Compiler, Document, Tri};
 use crate::error::{ErrorKind, LoadError};
-use crate::surface::Texture;
-use crate::xml::Tree;
+use crate::math::{Quat, Vec3, add, mat_vec, quat_mul, quat_rotate, quat_to_mat};
 use crate::model::{Arrays, JointType};
 use crate::surface::Texture;
 use crate::xml::Tree;

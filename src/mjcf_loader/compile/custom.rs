@@ -2,16 +2,11 @@
 
 use super::context::{Context, Ids};
 use super::geometry::normalize;
-use crate::attached::{AttachedKey, KeyPart, Keyed};
-use crate::custom::{Key, Named, TupleElement};
-use crate::document::Document;
-use crate::error::{ErrorKind, LoadError};
-use crate::math::{Quat, Vec3, quat_at, quat_normalize};
 use crate::attached::MovedKey;
 use crate::custom::{Key, Named, TupleElement};
 use crate::document::Document;
 use crate::error::{ErrorKind, LoadError};
-use crate::table::Table;
+use crate::math::{Quat, Vec3, quat_at, quat_normalize};
 use crate::model::{Arrays, Keyframe};
 use crate::table::Table;
 

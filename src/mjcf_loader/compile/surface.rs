@@ -2,10 +2,8 @@
 
 use super::context::{Context, Ids};
 use crate::assets::{AssetError, AssetSource};
-use crate::formats::png::check_png;
 use crate::error::{ErrorKind, LoadError};
-use crate::settings::single;
-use crate::surface;
+use crate::formats::png::check_png;
 use crate::model::{self, Builtin, TextureType};
 use crate::settings::single;
 use crate::surface;
