@@ -130,7 +130,7 @@ pub use mjcf_sim::formats;
 #[cfg(feature = "rapier")]
 pub use mjcf_sim::rapier;
 pub use mjcf_sim::{Limits, Model, assets, files, math, mjcf_loader, model, physics, render};
-use mjcf_sim::{limits, shelf, text, threads};
+use mjcf_sim::{limits, pool, text, threads};
 
 pub use config::table::Config;
 pub use env::error::EnvError;

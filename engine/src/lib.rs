@@ -6,7 +6,7 @@
 mod simulation;
 
 pub use mjcf_sim_loader as mjcf_loader;
-pub use mjcf_sim_model::{Limits, Model, assets, files, formats, limits, math, model, shelf, text, threads};
+pub use mjcf_sim_model::{Limits, Model, assets, files, formats, limits, math, model, pool, text, threads};
 pub use mjcf_sim_physics as physics;
 #[cfg(feature = "rapier")]
 pub use mjcf_sim_rapier as rapier;

@@ -6,9 +6,9 @@ use crate::config::{Compat, Config, EngineKind};
 use crate::env::EnvError;
 use crate::model::Model;
 use crate::physics::{Engine, SoftModel, SoftOptions, State};
+use crate::pool::Pool;
 #[cfg(feature = "rapier")]
 use crate::rapier::{RapierModel, RapierOptions};
-use crate::shelf::Shelf;
 
 /// The source of the engine that an environment steps with.
 pub(in crate::env) enum EngineSource<'a> {
@@ -42,9 +42,9 @@ pub(in crate::env) struct Engines {
     kind: EngineMaker,
     /// An engine that answers questions about the model and never steps.
     reader: Box<dyn Engine>,
-    idle: Shelf<Box<dyn Engine>>,
+    idle: Pool<Box<dyn Engine>>,
     /// Scratch states for the computed part of one environment of a vector at a time.
-    states: Shelf<Box<State>>,
+    states: Pool<Box<State>>,
 }
 
 impl std::fmt::Debug for Engines {
@@ -58,8 +58,8 @@ impl Engines {
         let kind = EngineMaker::new(config, model)?;
         Ok(Self {
             reader: kind.make(),
-            idle: Shelf::default(),
-            states: Shelf::default(),
+            idle: Pool::default(),
+            states: Pool::default(),
             kind,
         })
     }

@@ -15,7 +15,7 @@ use crate::config::Compat;
 use crate::env::{BehaviorInfo, EYE_HAND_PAIRS, Info, PartNames, PerEyeAndHand, PerHand, SCORED_PARTS as PARTS};
 use crate::json;
 use crate::model::Model;
-use crate::physics::world::ContactRules;
+use crate::physics::collision::ContactRules;
 
 /// Maximum number of records that count.
 pub const MAX_EPISODES: usize = 10_000;

@@ -13,7 +13,7 @@ pub mod limits;
 pub mod math;
 #[path = "mod.rs"]
 pub mod model;
-pub mod shelf;
+pub mod pool;
 pub mod text;
 pub mod threads;
 

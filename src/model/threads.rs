@@ -22,7 +22,7 @@ pub trait Job: Send + 'static {
 /// Jobs move through the queues by value, in boxes, so that nothing is allocated and nothing is shared. When the caller helps,
 /// the last thread rests. A waiting thread spins for a moment before it goes to sleep, as waking up takes longer than many
 /// jobs do.
-pub struct Pool<J: Job> {
+pub struct ThreadPool<J: Job> {
     shared: Arc<Shared<J>>,
     workers: Vec<JoinHandle<()>>,
 }
@@ -99,7 +99,7 @@ impl<J> Shared<J> {
     }
 }
 
-impl<J: Job> Pool<J> {
+impl<J: Job> ThreadPool<J> {
     /// Starts threads for at most `jobs` jobs at a time. A build without threads starts none.
     ///
     /// # Errors
@@ -114,7 +114,7 @@ impl<J: Job> Pool<J> {
     /// jobs follow each other closely.
     ///
     /// # Errors
-    /// As [`Pool::new`].
+    /// As [`ThreadPool::new`].
     pub fn of_one() -> std::io::Result<Self> {
         Self::start(1, 1, LONG_PATIENCE)
     }
@@ -151,12 +151,12 @@ impl<J: Job> Pool<J> {
         Ok(pool)
     }
 
-    /// Wakes a thread that [`Pool::of_one`] started, as a job is about to come.
+    /// Wakes a thread that [`ThreadPool::of_one`] started, as a job is about to come.
     pub fn wake(&self) {
         self.shared.spare.notify_one();
     }
 
-    /// Submits jobs. With `help`, the caller is one of the threads ([`Pool::next`]), and the last of the others rests.
+    /// Submits jobs. With `help`, the caller is one of the threads ([`ThreadPool::next`]), and the last of the others rests.
     pub fn submit(&self, jobs: impl Iterator<Item = Box<J>>, help: bool) {
         let mut queues = self.shared.lock();
         queues.jobs.extend(jobs);
@@ -248,7 +248,7 @@ impl<J: Job> Pool<J> {
 }
 
 /// Ends the threads, each when the job in its hands is done.
-impl<J: Job> Drop for Pool<J> {
+impl<J: Job> Drop for ThreadPool<J> {
     fn drop(&mut self) {
         let mut queues = self.shared.lock();
         queues.stop = true;
@@ -300,7 +300,7 @@ mod tests {
         impl Job for Nothing {
             fn run(&mut self) {}
         }
-        let pool = Pool::<Nothing>::new(3, 4).expect("threads");
+        let pool = ThreadPool::<Nothing>::new(3, 4).expect("threads");
         assert_eq!(pool.workers.len(), if PARALLEL { 3 } else { 0 });
         // each thread holds what it shares with the pool as long as it lives
         let alive = Arc::downgrade(&pool.shared);

@@ -5,11 +5,11 @@ use std::sync::Arc;
 use thiserror::Error;
 
 use crate::MAXVAL;
+use crate::collision::PairTable;
 use crate::model::Model;
 use crate::state::{Contact, State};
 use crate::table::length;
 use crate::topology::Topology;
-use crate::world::PairTable;
 
 /// Advances a [`State`] of a [`Model`]. An engine remembers nothing that changes a later step: the state is all there
 /// is.

@@ -7,26 +7,26 @@
 #![deny(missing_docs)]
 
 mod batch;
+pub mod collision;
 mod compile;
 pub mod constraint;
 pub mod contact;
+mod dof_rows;
 pub mod dynamics;
 pub mod engine;
 mod free_body;
 mod length_range;
 pub mod params;
-mod patterns;
 mod ray;
 mod shared;
 pub mod soft;
 pub mod spatial;
 pub mod state;
-mod strings;
 mod table;
+mod tendon_paths;
 pub mod tiles;
 pub mod topology;
 mod vectorize;
-pub mod world;
 
 pub use batch::{Batch, BatchError, BatchPart};
 pub use compile::compile;

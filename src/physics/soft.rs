@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use crate::collision::{PairTable, Sweep, contact_options};
 use crate::constraint::{Dual, Newton, RowBuilder, contact_forces};
 use crate::contact::Quirks;
 use crate::dynamics::*;
@@ -12,7 +13,6 @@ use crate::model::{IntegratorType, Model, SolverType};
 use crate::state::{RESERVED_CONTACTS, State};
 use crate::topology::Topology;
 use crate::vectorize::vectorized;
-use crate::world::{PairTable, Sweep, contact_options};
 
 /// The options of [`SoftEngine`]. The default is MuJoCo 3.3.0's contact geometry with physically right torque
 /// sensors.

@@ -1,9 +1,9 @@
 //! The structure of a model's tree, derived once for the dynamics: ancestor chains, trees, the layout of the inertia.
 
+use crate::dof_rows::{self, DofRows};
 use crate::model::Arrays;
 use crate::params::Params;
-use crate::patterns::{self, DofRows};
-use crate::strings::Strings;
+use crate::tendon_paths::TendonPaths;
 use crate::tiles::{Lanes, Pattern, Tile, ZERO};
 
 /// The structure of the tree of a [`crate::Model`], derived for the dynamics: ancestor chains, trees, the layout of matrices.
@@ -37,7 +37,7 @@ pub struct Topology {
     /// Degrees of freedom that can change the length of each tendon.
     pub tendons: DofRows,
     /// The paths of spatial tendons.
-    pub strings: Strings,
+    pub tendon_paths: TendonPaths,
     /// Degrees of freedom on which actuators act that have a moment of their own; none of those on joints and tendons.
     pub actuators: DofRows,
     /// Those actuators, by id.
@@ -84,15 +84,15 @@ impl Topology {
             body_tiles: Vec::new(),
             body_tile_adr: Vec::new(),
             tendons: DofRows::default(),
-            strings: Strings::default(),
+            tendon_paths: TendonPaths::default(),
             actuators: DofRows::default(),
-            own_moments: patterns::own_moments(model),
-            actuator_scalar: patterns::actuator_scalar(model),
+            own_moments: dof_rows::own_moments(model),
+            actuator_scalar: dof_rows::actuator_scalar(model),
         };
         topology.deal_tiles(model);
-        topology.tendons = patterns::tendons(model, &topology);
-        topology.strings = Strings::new(model, &topology, &topology.tendons);
-        topology.actuators = patterns::actuators(model, &topology);
+        topology.tendons = dof_rows::tendons(model, &topology);
+        topology.tendon_paths = TendonPaths::new(model, &topology, &topology.tendons);
+        topology.actuators = dof_rows::actuators(model, &topology);
         topology
     }
 

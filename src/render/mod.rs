@@ -68,7 +68,7 @@ pub use view::{FreeCamera, ImageBuffers, Poses, RenderRequest, View};
 use mjcf_sim_model::assets::AssetError;
 use mjcf_sim_model::text::quoted;
 // Paths of other files of this crate begin with `crate` for these, too.
-use mjcf_sim_model::{assets, formats, limits, math, model, shelf, threads};
+use mjcf_sim_model::{assets, formats, limits, math, model, pool, threads};
 
 /// Longest side of a picture, pixels.
 pub const MAX_SIZE: usize = 4096;

@@ -5,7 +5,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 use std::sync::{Arc, Mutex, PoisonError};
 
 use crate::math::{Mat3, Vec3};
-use crate::threads::{Job, PARALLEL, Pool};
+use crate::threads::{Job, PARALLEL, ThreadPool};
 use crate::view::ImageBuffers;
 use crate::{CpuRenderer, Poses, RenderError, RenderRequest, Scenery, View};
 
@@ -19,7 +19,7 @@ pub struct Pair {
 
 /// A thread, in the process that has it.
 struct Thread {
-    pool: Pool<Drawing>,
+    pool: ThreadPool<Drawing>,
     process: u32,
 }
 
@@ -86,7 +86,7 @@ impl Pair {
             self.leave_behind();
         }
         if self.thread.is_none() {
-            let pool = Pool::of_one().ok()?;
+            let pool = ThreadPool::of_one().ok()?;
             self.thread = Some(Thread { pool, process });
         }
         self.thread.as_ref()

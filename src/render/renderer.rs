@@ -5,7 +5,7 @@ use std::sync::Arc;
 use super::gpu_of_build::{SharedGpu, draw_on, scenery_of};
 use super::pair::Pair;
 use super::{CpuRenderer, ImageBuffers, RenderError, RenderRequest, Scenery};
-use crate::shelf::Shelf;
+use crate::pool::Pool;
 
 /// A renderer of one scene, on the CPU or on a GPU, that waits for its images.
 #[derive(Debug)]
@@ -27,7 +27,7 @@ enum Backend {
 }
 
 /// Renderers on the CPU whose memory those who draw the same scene in turn share.
-pub type SharedMemory = Arc<Shelf<CpuRenderer>>;
+pub type SharedMemory = Arc<Pool<CpuRenderer>>;
 
 /// The memory in which a renderer draws.
 #[derive(Debug)]
@@ -40,7 +40,7 @@ impl Memory {
     fn lend<R>(&mut self, work: impl FnOnce(&mut CpuRenderer) -> R) -> R {
         match self {
             Self::Own(renderer) => work(renderer),
-            Self::Shared(shelf) => shelf.lend(CpuRenderer::new, work),
+            Self::Shared(pool) => pool.lend(CpuRenderer::new, work),
         }
     }
 }
@@ -50,7 +50,7 @@ impl Clone for Memory {
     fn clone(&self) -> Self {
         match self {
             Self::Own(_) => Self::Own(Box::default()),
-            Self::Shared(shelf) => Self::Shared(shelf.clone()),
+            Self::Shared(pool) => Self::Shared(pool.clone()),
         }
     }
 }

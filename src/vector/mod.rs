@@ -42,7 +42,7 @@ pub use seeds::Seeds;
 use crate::config::RendererKind;
 use crate::env::{Blueprint, Env, EnvError};
 use crate::spaces::{BoxSpace, ObservationSpace};
-use crate::threads::Pool;
+use crate::threads::ThreadPool;
 use infos::InfoRows;
 use memory::Estimate;
 use rows::{Layout, Rows};
@@ -73,7 +73,7 @@ use slot::Slot;
 pub struct VectorEnv {
     /// The environments; those in flight are with the pool.
     slots: Vec<Option<Box<Slot>>>,
-    pool: Pool<Slot>,
+    pool: ThreadPool<Slot>,
     in_flight: usize,
     /// Number of calls of `send`, to detect an environment that is named twice.
     sends: u64,
@@ -168,7 +168,7 @@ impl VectorEnv {
         Ok(Self {
             slots: slots.collect(),
             // a vector of one thread uses only the caller's
-            pool: Pool::new(if threads > 1 { threads } else { 0 }, n)?,
+            pool: ThreadPool::new(if threads > 1 { threads } else { 0 }, n)?,
             in_flight: 0,
             sends: 0,
             threads,

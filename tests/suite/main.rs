@@ -48,7 +48,7 @@ mod scene_file;
 mod second_infant;
 mod senses;
 mod snapshot;
-mod strings;
+mod spatial_tendons;
 mod tasks;
 mod touch;
 mod vector;

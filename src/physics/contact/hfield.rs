@@ -1,5 +1,6 @@
 //! Height fields: each half of a square of their grid is a prism, which touches as a convex shape does.
 
+use super::ccd_support::CcdSupport;
 use super::epa::epa;
 use super::fix_normal::fixed;
 use super::frame;
@@ -8,7 +9,6 @@ use super::mesh::MeshShape;
 use super::mpr;
 use super::polytope::Polytope;
 use super::support::{Ball, Capsule, Cuboid, Cylinder, Difference, Ellipsoid, Point, Segment, Support};
-use super::whole::Whole;
 use super::{BIG, BareContact, ContactOptions, ContactPoint, PlacedGeom, add_scaled, dot, sub};
 use crate::math::{Mat3, Vec3, add, mat_mul, mat_t_vec, mat_vec, scale, transpose, unit};
 use crate::model::{GeomType, HField};
@@ -82,7 +82,7 @@ pub(super) fn hfield(
     if local.kind == GeomType::Mesh && local.mesh.is_none() {
         return;
     }
-    let bare = Whole::new(&local, 0.0, 0);
+    let bare = CcdSupport::new(&local, 0.0, 0);
     let Some(cells) = cells(field, &bare, margin) else {
         return;
     };
@@ -98,7 +98,7 @@ pub(super) fn hfield(
             touch_cells(field, &cells, margin, touch, found);
         });
     } else {
-        let other = Whole::new(&local, margin, bare.corner());
+        let other = CcdSupport::new(&local, margin, bare.corner());
         let limits = mpr::Limits {
             tolerance: options.ccd_tolerance,
             iterations: options.ccd_iterations,

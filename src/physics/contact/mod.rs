@@ -42,6 +42,7 @@ mod box_box;
 mod box_edge;
 mod box_face;
 mod capsule_box;
+mod ccd_support;
 mod convex;
 mod distance;
 mod epa;
@@ -52,16 +53,15 @@ mod gjk;
 mod hfield;
 mod mesh;
 mod mpr;
+mod multiccd;
 mod nearest;
 mod plane;
 mod polytope;
 mod round;
-mod several;
 mod support;
 #[cfg(test)]
 mod tests;
 mod triangle;
-mod whole;
 
 pub use distance::distance;
 
@@ -300,7 +300,7 @@ pub fn collide(
         | (Capsule | Ellipsoid | Cylinder, Cylinder)
         | (Ellipsoid | Cylinder, Box)
         | (Sphere | Capsule | Ellipsoid | Cylinder | Box | Mesh, Mesh) => {
-            several::convex(a, b, margin, options, scratch, out);
+            multiccd::convex(a, b, margin, options, scratch, out);
         }
         _ => {}
     }

@@ -5,7 +5,7 @@ use crate::math::*;
 use crate::model::{Arrays, Wrap};
 use crate::spatial::{Spatial, angular, linear};
 use crate::state::State;
-use crate::strings::{Between, Moved, Span};
+use crate::tendon_paths::{PathDof, SegmentKind, Span};
 use crate::topology::Topology;
 
 /// Computes lengths, Jacobians and rates of all tendons, and the points of spatial ones: `ten_length, ten_j, ten_velocity,
@@ -44,7 +44,7 @@ fn fixed(model: &Arrays, topology: &Topology, s: &mut State, t: usize) {
 /// Computes a spatial tendon; kept out of the code that is compiled twice.
 #[inline(never)]
 fn spatial(topology: &Topology, s: &mut State, t: usize, points: &mut usize) {
-    let strings = &topology.strings;
+    let paths = &topology.tendon_paths;
     let sites = &s.site_xpos[..];
     let mut passed = s.wrap_xpos[*points..].iter_mut().zip(&mut s.wrap_obj[*points..]);
     let mut pass = |point: Vec3, object: i32| {
@@ -56,7 +56,7 @@ fn spatial(topology: &Topology, s: &mut State, t: usize, points: &mut usize) {
     let row = &mut s.ten_j[topology.tendons.range(t)];
     row.fill(0.0);
     let (mut length, mut has_entries) = (0.0, false);
-    for leg in strings.path(t) {
+    for leg in paths.path(t) {
         let Some(stretch) = leg else {
             pass([0.0; 3], PULLEY);
             continue;
@@ -66,7 +66,7 @@ fn spatial(topology: &Topology, s: &mut State, t: usize, points: &mut usize) {
             has_entries |= span.moves;
             let (direction, length) = unit(sub(b, a));
             let along = scale(direction, stretch.share);
-            let [first, second] = strings.apart(span);
+            let [first, second] = paths.apart(span);
             add_end(row, &s.cdof, s.subtree_com[span.roots[0]], first, a, scale(along, -1.0));
             add_end(row, &s.cdof, s.subtree_com[span.roots[1]], second, b, along);
             length
@@ -74,12 +74,12 @@ fn spatial(topology: &Topology, s: &mut State, t: usize, points: &mut usize) {
         pass(a, SITE);
         length += stretch.share
             * match &stretch.between {
-                Between::Nothing => add(&stretch.straight, a, b),
-                Between::Constant(length) => {
+                SegmentKind::Nothing => add(&stretch.straight, a, b),
+                SegmentKind::Constant(length) => {
                     has_entries |= stretch.straight.moves;
                     *length
                 }
-                Between::Geom(obstacle) => {
+                SegmentKind::Geom(obstacle) => {
                     let geom = obstacle.geom;
                     let round = Round {
                         pos: s.geom_xpos[geom],
@@ -118,11 +118,11 @@ const AT_REST: f64 = 1e-12;
 /// Adds to the row of a tendon what a point of a body, which `moved` moves, has to do with its length: the velocity of the point along
 /// a direction.
 #[inline(always)]
-fn add_end(row: &mut [f64], cdof: &[Spatial], com: Vec3, moved: &[Moved], point: Vec3, along: Vec3) {
+fn add_end(row: &mut [f64], cdof: &[Spatial], com: Vec3, moved: &[PathDof], point: Vec3, along: Vec3) {
     // as a wrench about the centre of mass to which `cdof` refers
     let arm = sub(point, com);
     let turn = cross(arm, along);
-    for &Moved { dof, place } in moved {
+    for &PathDof { dof, place } in moved {
         let axis = &cdof[dof as usize];
         let mut speed = dot(angular(axis), turn) + dot(linear(axis), along);
         if speed.abs() < AT_REST {

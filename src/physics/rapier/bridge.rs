@@ -11,6 +11,7 @@ use crate::rig::Rig;
 use crate::rows::{RapierRows, read_welds, softness};
 use crate::{ContactDispatcher, RapierError, RapierOptions, Sets};
 use mjcf_sim_model::model::Model;
+use mjcf_sim_physics::collision::{PairTable, Sweep, contact_options};
 use mjcf_sim_physics::constraint::RowBuilder;
 use mjcf_sim_physics::contact::{ContactOptions, Quirks};
 use mjcf_sim_physics::dynamics::*;
@@ -18,7 +19,6 @@ use mjcf_sim_physics::engine::{EngineError, Stage, check_contacts, check_input, 
 use mjcf_sim_physics::params::Params;
 use mjcf_sim_physics::state::{RESERVED_CONTACTS, State};
 use mjcf_sim_physics::topology::Topology;
-use mjcf_sim_physics::world::{PairTable, Sweep, contact_options};
 
 /// A model in a Rapier world that may hold anything else: it hands a [`State`] to Rapier before a step of the world,
 /// and takes the result out of it.

@@ -13,10 +13,10 @@ use crate::bridge::Bridge;
 use crate::rig::Rig;
 use crate::{RapierError, RapierOptions, Sets};
 use mjcf_sim_model::model::{IntegratorType, Model};
+use mjcf_sim_physics::collision::PairTable;
 use mjcf_sim_physics::engine::{Engine, EngineError, Probe, Stage};
 use mjcf_sim_physics::state::State;
 use mjcf_sim_physics::topology::Topology;
-use mjcf_sim_physics::world::PairTable;
 
 /// The sets of a world of our own.
 #[derive(Clone, Debug, Default)]

@@ -129,7 +129,7 @@ fn room_of(name: &str) -> &str {
         "Config" => "config",
         // what lib.rs re-exports of the engine's crates
         "Limits" | "Model" | "assets" | "files" | "limits" | "math" | "mjcf_loader" | "model" | "physics"
-        | "rapier" | "render" | "shelf" | "text" | "threads" => "engine",
+        | "rapier" | "render" | "pool" | "text" | "threads" => "engine",
         "Env" | "Blueprint" | "EnvError" | "Info" | "Observation" | "Step" => "env",
         "AutoresetMode" | "VectorEnv" | "VectorOptions" => "vector",
         "make_env" => "runs",

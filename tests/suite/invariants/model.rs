@@ -5,7 +5,7 @@ use std::sync::Arc;
 use babybench::config::{Behavior, BodyParts, Part, Scene};
 use babybench::mimo::{build_model, embedded};
 use babybench::model::SensorType;
-use babybench::physics::world::PairTable;
+use babybench::physics::collision::PairTable;
 use babybench::{Config, Model};
 
 use crate::common::*;

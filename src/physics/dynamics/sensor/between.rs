@@ -1,10 +1,10 @@
 //! Sensors between geoms: distance, direction, nearest points.
 
+use crate::collision::placed;
 use crate::contact::{ContactOptions, ContactPoint, Scratch, distance};
 use crate::math::*;
 use crate::model::{Model, ObjType, SensorType};
 use crate::state::State;
-use crate::world::placed;
 
 /// The working memory of these sensors, which is only there where a model has one.
 #[derive(Clone, Debug, Default)]

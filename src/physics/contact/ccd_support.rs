@@ -1,4 +1,4 @@
-//! Convex shapes as MuJoCo gives them to libccd: whole, without a core, of any kind; and the contact that MPR finds of two.
+//! Support functions of convex geoms as MuJoCo passes them to libccd, and the contact that MPR finds between two of them.
 
 use std::cell::Cell;
 
@@ -11,18 +11,18 @@ use crate::math::{Vec3, add, mat_t_vec, mat_vec, scale, unit};
 use crate::model::GeomType;
 
 /// A convex geom of any kind, grown by half the margin (MuJoCo's `mjccd_support`).
-pub(super) struct Whole<'a> {
+pub(super) struct CcdSupport<'a> {
     geom: &'a PlacedGeom<'a>,
     margin: f64,
     /// The corner of a mesh's hull that was found last, from which the next is looked for.
     corner: Cell<usize>,
 }
 
-impl<'a> Whole<'a> {
+impl<'a> CcdSupport<'a> {
     /// Creates the shape of a geom; `corner` is of its hull.
     pub(super) fn new(geom: &'a PlacedGeom<'a>, margin: f64, corner: usize) -> Self {
         let corner = Cell::new(corner);
-        Whole { geom, margin, corner }
+        CcdSupport { geom, margin, corner }
     }
 
     /// Returns the corner of its hull that was found last.
@@ -48,7 +48,7 @@ fn sign(x: f64) -> f64 {
     }
 }
 
-impl Support for Whole<'_> {
+impl Support for CcdSupport<'_> {
     fn support(&self, dir: Vec3) -> Vec3 {
         let PlacedGeom { kind, size, mat, .. } = *self.geom;
         let local = mat_t_vec(mat, dir);
@@ -93,7 +93,10 @@ pub(super) fn convex(
     {
         return None;
     }
-    let (first, second) = (Whole::new(a, margin, corners[0]), Whole::new(b, margin, corners[1]));
+    let (first, second) = (
+        CcdSupport::new(a, margin, corners[0]),
+        CcdSupport::new(b, margin, corners[1]),
+    );
     let limits = Limits {
         tolerance: options.ccd_tolerance,
         iterations: options.ccd_iterations,

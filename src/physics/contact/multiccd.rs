@@ -2,7 +2,7 @@
 
 use super::mesh::mesh_radius;
 use super::{BareContact, ContactOptions, ContactPoint, PlacedGeom, Scratch, faces, push, sub};
-use super::{convex, whole};
+use super::{ccd_support, convex};
 use crate::math::{Mat3, Vec3, add, mat_mul, mat_vec, norm, quat_to_mat, scale, transpose, unit};
 use crate::mjcf_loader::bounding_radius;
 use crate::model::GeomType;
@@ -26,7 +26,7 @@ pub(super) fn convex(
     let found = if options.nativeccd {
         convex::convex(a, b, margin, options, &mut scratch.polytope, &mut overlap)
     } else {
-        whole::convex(a, b, margin, options, &mut corners)
+        ccd_support::convex(a, b, margin, options, &mut corners)
     };
     let Some(touch) = found else { return };
     if options.multiccd {
@@ -92,7 +92,7 @@ fn tilted(
             let found = if options.nativeccd {
                 convex::convex(&a, &b, margin, options, &mut scratch.polytope, &mut None)
             } else {
-                whole::convex(&a, &b, margin, options, &mut corners)
+                ccd_support::convex(&a, &b, margin, options, &mut corners)
             };
             let elsewhere =
                 |touch: &BareContact| out[begin..].iter().all(|known| norm(sub(known.pos, touch.pos)) > apart);

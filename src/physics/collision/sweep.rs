@@ -2,13 +2,13 @@
 
 use super::pairs::Order;
 use super::{boxes, broad};
+use crate::collision::{Pair, PairTable};
 use crate::contact::{ContactOptions, ContactPoint, PlacedGeom, Scratch, bounding_test, collide};
 use crate::engine::{EngineError, within};
 use crate::limits::Limits;
 use crate::math::Vec3;
 use crate::model::{GeomType, Model};
 use crate::state::{Contact, RESERVED_CONTACTS, State};
-use crate::world::{Pair, PairTable};
 
 /// Enlargement of boxes, m: more than rounding, so that the exact routines decide. The tolerance of the convex routines comes on top, as far as
 /// which they may find a contact where there is a gap.

@@ -1,23 +1,23 @@
-//! The paths of spatial tendons, ready for a step: which sites follow each other, with what between them, and what moves them.
+//! The paths of spatial tendons, prepared for a step: sites in order, what lies between them, and the degrees of freedom that move them.
 
 use std::ops::Range;
 
+use crate::dof_rows::DofRows;
 use crate::math::{Vec3, add, norm, quat_rotate, sub};
 use crate::model::{Arrays, Wrap};
-use crate::patterns::DofRows;
 use crate::topology::Topology;
 
 /// The paths of all tendons.
 #[derive(Clone, Debug, Default)]
-pub struct Strings {
+pub struct TendonPaths {
     /// First leg of each tendon, and one past the last.
     adr: Vec<usize>,
     legs: Vec<Leg>,
-    stretches: Vec<Stretch>,
-    moved: Vec<Moved>,
+    stretches: Vec<PathSegment>,
+    moved: Vec<PathDof>,
 }
 
-/// What follows on a path.
+/// The next part of a path.
 #[derive(Clone, Copy, Debug)]
 enum Leg {
     /// A pulley.
@@ -28,20 +28,20 @@ enum Leg {
 
 /// A part of a path between two sites.
 #[derive(Clone, Debug)]
-pub struct Stretch {
+pub struct PathSegment {
     pub sites: [usize; 2],
-    /// What its length is multiplied by.
+    /// Factor of its length.
     pub share: f64,
     /// From one to the other.
     pub straight: Span,
-    pub between: Between,
+    pub between: SegmentKind,
     /// Whether the path ends at the second site, or goes on behind a pulley.
     pub ends: bool,
 }
 
-/// What is between two sites.
+/// The space between two sites of a path.
 #[derive(Clone, Debug)]
-pub enum Between {
+pub enum SegmentKind {
     Nothing,
     /// Nothing, and nothing moves them against each other: their distance, m.
     Constant(f64),
@@ -75,12 +75,12 @@ pub struct Span {
 
 /// A degree of freedom, and its place in the row of the tendon.
 #[derive(Clone, Copy, Debug)]
-pub struct Moved {
+pub struct PathDof {
     pub dof: u32,
     pub place: u32,
 }
 
-impl Strings {
+impl TendonPaths {
     /// Lists what the paths of a model consist of. `rows` are the degrees of freedom of each tendon.
     pub fn new(model: &Arrays, topology: &Topology, rows: &DofRows) -> Self {
         let mut all = Self::default();
@@ -124,17 +124,17 @@ impl Strings {
                 Some((geom, side, cylinder)) => {
                     let body = model.geom_bodyid[geom];
                     let spans = [[a, body], [body, b]].map(|bodies| self.span(model, topology, bodies, dofs));
-                    Between::Geom(Obstacle {
+                    SegmentKind::Geom(Obstacle {
                         geom,
                         side,
                         cylinder,
                         spans,
                     })
                 }
-                None => rigid_distance(model, [first, second]).map_or(Between::Nothing, Between::Constant),
+                None => rigid_distance(model, [first, second]).map_or(SegmentKind::Nothing, SegmentKind::Constant),
             };
             self.legs.push(Leg::Sites(self.stretches.len()));
-            self.stretches.push(Stretch {
+            self.stretches.push(PathSegment {
                 sites: [first, second],
                 share: 1.0 / divisor,
                 straight,
@@ -151,7 +151,7 @@ impl Strings {
         let mut add = |chain: &[u32]| {
             let start = self.moved.len();
             let place = |dof: u32| dofs.partition_point(|&other| other < dof) as u32;
-            let moved = chain.iter().map(|&dof| Moved { dof, place: place(dof) });
+            let moved = chain.iter().map(|&dof| PathDof { dof, place: place(dof) });
             self.moved.extend(moved);
             start..self.moved.len()
         };
@@ -165,7 +165,7 @@ impl Strings {
 
     /// Iterates over the path of a spatial tendon; `None` is a pulley.
     #[inline]
-    pub fn path(&self, tendon: usize) -> impl Iterator<Item = Option<&Stretch>> {
+    pub fn path(&self, tendon: usize) -> impl Iterator<Item = Option<&PathSegment>> {
         let legs = &self.legs[self.adr[tendon]..self.adr[tendon + 1]];
         legs.iter().map(|leg| match *leg {
             Leg::Pulley => None,
@@ -175,7 +175,7 @@ impl Strings {
 
     /// Returns what moves the first end of a span alone, and what moves the second one alone.
     #[inline]
-    pub fn apart(&self, span: &Span) -> [&[Moved]; 2] {
+    pub fn apart(&self, span: &Span) -> [&[PathDof]; 2] {
         [&self.moved[span.first.clone()], &self.moved[span.second.clone()]]
     }
 }

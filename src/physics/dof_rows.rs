@@ -1,4 +1,4 @@
-//! Which degrees of freedom move what is not a body: tendons, and what actuators act on.
+//! The degrees of freedom that move tendons, and those that actuators act on.
 
 use std::ops::Range;
 

@@ -1,21 +1,21 @@
-//! Tools that remember nothing from one use to the next, and can therefore serve many users in turn.
+//! Pools of reusable tools that remember nothing from one use to the next, so that many users can take turns.
 
 use std::sync::{Mutex, PoisonError};
 
-/// The tools that nobody uses at the moment. There are as many as were ever used at once, by as many threads, however many users
+/// The idle tools. The pool grows to as many tools as are ever used at once, however many users
 /// there are.
 #[derive(Debug)]
-pub struct Shelf<T> {
+pub struct Pool<T> {
     idle: Mutex<Vec<T>>,
 }
 
-impl<T> Default for Shelf<T> {
+impl<T> Default for Pool<T> {
     fn default() -> Self {
         Self { idle: Mutex::default() }
     }
 }
 
-impl<T> Shelf<T> {
+impl<T> Pool<T> {
     /// Does some work with a tool, which `make` makes if none is idle. One with which the work panicked does not come back.
     pub fn lend<R>(&self, make: impl FnOnce() -> T, work: impl FnOnce(&mut T) -> R) -> R {
         let mut tool = self.take().unwrap_or_else(make);
@@ -47,25 +47,25 @@ mod tests {
 
     #[test]
     fn tools_are_made_when_all_others_are_in_use() {
-        let (shelf, mut made) = (Shelf::default(), 0);
+        let (pool, mut made) = (Pool::default(), 0);
         let mut numbered = || {
             made += 1;
             made
         };
         for _ in 0..3 {
-            assert_eq!(shelf.lend(&mut numbered, |tool| *tool), 1);
+            assert_eq!(pool.lend(&mut numbered, |tool| *tool), 1);
         }
-        let pair = shelf.lend(&mut numbered, |outer| shelf.lend(|| 2, |inner| (*outer, *inner)));
+        let pair = pool.lend(&mut numbered, |outer| pool.lend(|| 2, |inner| (*outer, *inner)));
         assert_eq!(pair, (1, 2));
-        assert_eq!(shelf.lend(|| 3, |tool| *tool), 1, "the last one that came back");
+        assert_eq!(pool.lend(|| 3, |tool| *tool), 1, "the last one that came back");
     }
 
     #[test]
     fn a_tool_does_not_come_back_from_a_panic() {
-        let shelf = Shelf::default();
-        let work = || shelf.lend(|| 1, |_| panic!("at work"));
+        let pool = Pool::default();
+        let work = || pool.lend(|| 1, |_| panic!("at work"));
         let caught = std::panic::catch_unwind(std::panic::AssertUnwindSafe(work));
         assert!(caught.is_err());
-        assert_eq!(shelf.lend(|| 2, |tool| *tool), 2);
+        assert_eq!(pool.lend(|| 2, |tool| *tool), 2);
     }
 }
