@@ -55,7 +55,7 @@ pub struct Blueprint {
     /// The identity that a snapshot must match.
     identity: Arc<Identity>,
     /// Identity, model and parameters before a program changed the model.
-    origin: Arc<Origin>,
+    origin: Arc<UnchangedModel>,
     surface: Surface,
 }
 
@@ -87,7 +87,7 @@ impl Tables {
 
 /// The state of a blueprint before its model was changed.
 #[derive(Debug)]
-struct Origin {
+struct UnchangedModel {
     model: Arc<Model>,
     params: Shared<Params>,
     identity: Arc<Identity>,
@@ -174,7 +174,7 @@ impl Blueprint {
         let settled = Settled::new(&config, &*task, &engines, &*tables.actuation, &model, paths.as_deref())?;
         let identity = Arc::new(Identity::new(&model, &config));
         let params = settled.params;
-        let origin = Origin {
+        let origin = UnchangedModel {
             model: model.clone(),
             params: params.clone(),
             identity: identity.clone(),

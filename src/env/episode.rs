@@ -6,7 +6,7 @@ use crate::env::task::Goals;
 use crate::env::{Env, EnvError, Observation, Task, TaskScene};
 
 /// The scene of an environment together with its task.
-pub(super) struct Play<'a> {
+pub(super) struct StagedTask<'a> {
     pub scene: TaskScene<'a>,
     pub task: &'a mut dyn Task,
     pub goals: &'a mut Goals,
@@ -42,7 +42,7 @@ impl Env {
             self.seed_action_space(seed);
         }
         self.end_episode();
-        let Play { mut scene, task, .. } = self.play();
+        let StagedTask { mut scene, task, .. } = self.play();
         task.reset(&mut scene)?;
         self.begin_episode()?;
         self.check_shared()?;
@@ -50,7 +50,7 @@ impl Env {
     }
 
     /// Returns the scene together with its task.
-    pub(super) fn play(&mut self) -> Play<'_> {
+    pub(super) fn play(&mut self) -> StagedTask<'_> {
         let (engine, state, last_call, base) = self.physics.parts();
         let scene = TaskScene {
             config: self.blueprint.config(),
@@ -66,7 +66,7 @@ impl Env {
             start: [self.blueprint.init_qpos(), self.blueprint.init_qvel()],
             action: &mut self.action,
         };
-        Play {
+        StagedTask {
             scene,
             task: &mut *self.task,
             goals: &mut self.goals,
@@ -104,7 +104,7 @@ impl Env {
             self.task.forget();
             clear(&*self.task, &mut self.info);
         }
-        let Play {
+        let StagedTask {
             mut scene, task, goals, ..
         } = self.play();
         task.begin(&mut scene, &mut goals.desired);

@@ -77,7 +77,7 @@ use crate::config::Config;
 use crate::mimo::{LockReport, LockTarget};
 use crate::spaces::NumpyRng;
 use action_delay::ActionDelay;
-use episode::{Episode, Play};
+use episode::{Episode, StagedTask};
 use outcome::clear;
 use physics::Physics;
 use placed::check_vector;
@@ -232,7 +232,7 @@ impl Env {
         let frame_skip = self.blueprint.config().frame_skip;
         self.senses.forget_picture();
         self.senses.prepare();
-        let Play {
+        let StagedTask {
             mut scene,
             task,
             applied,

@@ -7,14 +7,14 @@ use super::custom::Key;
 use super::document::{Body, Document};
 use super::error::{ErrorKind, LoadError};
 use super::mesh::Mesh;
-use super::relation::{Along, Equality, Exclude, Held, Pair, Tendon, WeldEquality};
+use super::relation::{Along, Equality, EqualityElements, Exclude, Pair, Tendon, WeldEquality};
 use super::sensor::{FrameOf, Object, Sensor};
 use super::xml::Tree;
 use crate::model::{DynType, ObjType};
 
 /// A kind of element that others refer to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub(super) enum Thing {
+pub(super) enum ElementKind {
     Body,
     Joint,
     Geom,
@@ -36,11 +36,11 @@ pub(super) trait Referring: Clone {
     fn name(&mut self) -> &mut String;
 
     /// Returns the names that it refers to, with the kinds of what they name.
-    fn names(&mut self) -> Vec<(Thing, &mut String)>;
+    fn names(&mut self) -> Vec<(ElementKind, &mut String)>;
 
     /// Returns what MuJoCo 3.3.0 looks for by its name in the model only, so that the element does not come along under another name:
     /// geoms that a tendon wraps around without a side site.
-    fn left(&self) -> Option<(Thing, String)> {
+    fn left(&self) -> Option<(ElementKind, String)> {
         None
     }
 
@@ -55,7 +55,8 @@ pub(super) trait Referring: Clone {
             .collect();
         let some = found.contains(&true);
         // what of two is not copied may be there itself
-        let there = |((thing, name), found): (&(Thing, &mut String), &bool)| *found || known.has(*thing, name, "");
+        let there =
+            |((thing, name), found): (&(ElementKind, &mut String), &bool)| *found || known.has(*thing, name, "");
         let whole = match (some, Self::LOOSE) {
             (false, _) => names.is_empty() && Self::LOOSE,
             (true, true) => names.iter().zip(&found).all(there),
@@ -75,7 +76,7 @@ pub(super) trait Referring: Clone {
 /// The names that elements may refer to.
 #[derive(Default)]
 pub(super) struct Known {
-    names: BTreeMap<Thing, BTreeSet<String>>,
+    names: BTreeMap<ElementKind, BTreeSet<String>>,
 }
 
 impl Known {
@@ -83,28 +84,33 @@ impl Known {
     pub fn of(document: &Document) -> Self {
         let mut known = Self::default();
         known.add(document.bodies.iter().flat_map(hanging));
-        known.add(document.tendons.iter().map(|tendon| (Thing::Tendon, &tendon.name)));
+        known.add(
+            document
+                .tendons
+                .iter()
+                .map(|tendon| (ElementKind::Tendon, &tendon.name)),
+        );
         known.add(
             document
                 .actuators
                 .iter()
-                .map(|actuator| (Thing::Actuator, &actuator.name)),
+                .map(|actuator| (ElementKind::Actuator, &actuator.name)),
         );
         known
     }
 
-    pub fn add<'a>(&mut self, names: impl Iterator<Item = (Thing, &'a String)>) {
+    pub fn add<'a>(&mut self, names: impl Iterator<Item = (ElementKind, &'a String)>) {
         for (thing, name) in names.filter(|(_, name)| !name.is_empty()) {
             self.names.entry(thing).or_default().insert(name.clone());
         }
     }
 
-    pub fn remove(&mut self, thing: Thing, name: &str) {
+    pub fn remove(&mut self, thing: ElementKind, name: &str) {
         self.names.entry(thing).or_default().remove(name);
     }
 
     /// Tells whether there is something whose name is `name` with `suffix` behind.
-    fn has(&self, thing: Thing, name: &str, suffix: &str) -> bool {
+    fn has(&self, thing: ElementKind, name: &str, suffix: &str) -> bool {
         let Some(names) = self.names.get(&thing) else {
             return false;
         };
@@ -129,7 +135,7 @@ macro_rules! referring {
                 &mut self.name
             }
 
-            fn names(&mut self) -> Vec<(Thing, &mut String)> {
+            fn names(&mut self) -> Vec<(ElementKind, &mut String)> {
                 let $this = self;
                 $names
             }
@@ -139,11 +145,11 @@ macro_rules! referring {
     )*};
 }
 referring! {
-    Pair, true, pair => vec![(Thing::Geom, &mut pair.geom1), (Thing::Geom, &mut pair.geom2)];
-    Exclude, true, exclude => vec![(Thing::Body, &mut exclude.body1), (Thing::Body, &mut exclude.body2)];
+    Pair, true, pair => vec![(ElementKind::Geom, &mut pair.geom1), (ElementKind::Geom, &mut pair.geom2)];
+    Exclude, true, exclude => vec![(ElementKind::Body, &mut exclude.body1), (ElementKind::Body, &mut exclude.body2)];
     Equality, false, equality => held(&mut equality.held);
     Tendon, true, tendon => tendon.path.iter_mut().flat_map(along).collect(), {
-        fn left(&self) -> Option<(Thing, String)> {
+        fn left(&self) -> Option<(ElementKind, String)> {
             wrapped(self)
         }
 
@@ -160,28 +166,34 @@ referring! {
 }
 
 /// Returns the names that an equality refers to.
-fn held(held: &mut Held) -> Vec<(Thing, &mut String)> {
+fn held(held: &mut EqualityElements) -> Vec<(ElementKind, &mut String)> {
     let of = |kind, first, second| std::iter::chain(first, second).map(move |name| (kind, name));
     match held {
-        Held::Joint(joint) => of(Thing::Joint, Some(&mut joint.joint1), joint.joint2.as_mut()).collect(),
-        Held::Tendon(tendon) => of(Thing::Tendon, Some(&mut tendon.tendon1), tendon.tendon2.as_mut()).collect(),
-        Held::Connect(ends) | Held::Weld(WeldEquality { ends, .. }) => {
-            let bodies = of(Thing::Body, ends.body1.as_mut(), ends.body2.as_mut());
+        EqualityElements::Joint(joint) => {
+            of(ElementKind::Joint, Some(&mut joint.joint1), joint.joint2.as_mut()).collect()
+        }
+        EqualityElements::Tendon(tendon) => {
+            of(ElementKind::Tendon, Some(&mut tendon.tendon1), tendon.tendon2.as_mut()).collect()
+        }
+        EqualityElements::Connect(ends) | EqualityElements::Weld(WeldEquality { ends, .. }) => {
+            let bodies = of(ElementKind::Body, ends.body1.as_mut(), ends.body2.as_mut());
             bodies
-                .chain(of(Thing::Site, ends.site1.as_mut(), ends.site2.as_mut()))
+                .chain(of(ElementKind::Site, ends.site1.as_mut(), ends.site2.as_mut()))
                 .collect()
         }
     }
 }
 
 /// Returns the names of a piece of a tendon.
-fn along(piece: &mut Along) -> Vec<(Thing, &mut String)> {
+fn along(piece: &mut Along) -> Vec<(ElementKind, &mut String)> {
     match piece {
-        Along::Joint(joint) => vec![(Thing::Joint, &mut joint.joint)],
-        Along::Site(site) => vec![(Thing::Site, &mut site.site)],
+        Along::Joint(joint) => vec![(ElementKind::Joint, &mut joint.joint)],
+        Along::Site(site) => vec![(ElementKind::Site, &mut site.site)],
         Along::Geom(geom) => {
-            let side = geom.sidesite.iter_mut().map(|site| (Thing::Site, site));
-            std::iter::once((Thing::Geom, &mut geom.geom)).chain(side).collect()
+            let side = geom.sidesite.iter_mut().map(|site| (ElementKind::Site, site));
+            std::iter::once((ElementKind::Geom, &mut geom.geom))
+                .chain(side)
+                .collect()
         }
         Along::Pulley(_) => Vec::new(),
     }
@@ -210,27 +222,27 @@ fn thread(path: &mut [Along], suffix: &str, known: &Known) -> bool {
 }
 
 /// Returns the first geom that a tendon wraps around without a side site.
-fn wrapped(tendon: &Tendon) -> Option<(Thing, String)> {
+fn wrapped(tendon: &Tendon) -> Option<(ElementKind, String)> {
     tendon.path.iter().find_map(|piece| match piece {
         Along::Geom(geom) if geom.sidesite.as_ref().is_none_or(String::is_empty) => {
-            Some((Thing::Geom, geom.geom.clone()))
+            Some((ElementKind::Geom, geom.geom.clone()))
         }
         _ => None,
     })
 }
 
 /// Returns the names that an actuator refers to.
-fn driven(actuator: &mut Actuator) -> Vec<(Thing, &mut String)> {
+fn driven(actuator: &mut Actuator) -> Vec<(ElementKind, &mut String)> {
     let (target, at_site) = (&mut actuator.target, &mut actuator.at_site);
     let named = [
-        (Thing::Joint, &mut target.joint),
-        (Thing::Joint, &mut target.jointinparent),
-        (Thing::Tendon, &mut target.tendon),
-        (Thing::Site, &mut target.cranksite),
-        (Thing::Site, &mut target.slidersite),
-        (Thing::Site, &mut at_site.site),
-        (Thing::Site, &mut at_site.refsite),
-        (Thing::Body, &mut actuator.on_body.body),
+        (ElementKind::Joint, &mut target.joint),
+        (ElementKind::Joint, &mut target.jointinparent),
+        (ElementKind::Tendon, &mut target.tendon),
+        (ElementKind::Site, &mut target.cranksite),
+        (ElementKind::Site, &mut target.slidersite),
+        (ElementKind::Site, &mut at_site.site),
+        (ElementKind::Site, &mut at_site.refsite),
+        (ElementKind::Body, &mut actuator.on_body.body),
     ];
     let given = named
         .into_iter()
@@ -239,14 +251,14 @@ fn driven(actuator: &mut Actuator) -> Vec<(Thing, &mut String)> {
 }
 
 /// Returns the names that a sensor refers to.
-fn measured(object: &mut Object) -> Vec<(Thing, &mut String)> {
+fn measured(object: &mut Object) -> Vec<(ElementKind, &mut String)> {
     match object {
         Object::Nothing => Vec::new(),
-        Object::Site(name) => vec![(Thing::Site, name)],
-        Object::Joint(name) => vec![(Thing::Joint, name)],
-        Object::Tendon(name) => vec![(Thing::Tendon, name)],
-        Object::Actuator(name) => vec![(Thing::Actuator, name)],
-        Object::Subtree(name) => vec![(Thing::Body, name)],
+        Object::Site(name) => vec![(ElementKind::Site, name)],
+        Object::Joint(name) => vec![(ElementKind::Joint, name)],
+        Object::Tendon(name) => vec![(ElementKind::Tendon, name)],
+        Object::Actuator(name) => vec![(ElementKind::Actuator, name)],
+        Object::Subtree(name) => vec![(ElementKind::Body, name)],
         Object::Frame(of, within) => {
             let object = (framed(of.objtype), &mut of.objname);
             let reference = within.refname.iter_mut();
@@ -255,13 +267,16 @@ fn measured(object: &mut Object) -> Vec<(Thing, &mut String)> {
                 .chain(reference.map(|name| (kind, name)))
                 .collect()
         }
-        Object::Picture(picture) => vec![(Thing::Site, &mut picture.site), (Thing::Camera, &mut picture.camera)],
+        Object::Picture(picture) => vec![
+            (ElementKind::Site, &mut picture.site),
+            (ElementKind::Camera, &mut picture.camera),
+        ],
         Object::Between(between) => {
             let named = [
-                (Thing::Geom, &mut between.geom1),
-                (Thing::Body, &mut between.body1),
-                (Thing::Geom, &mut between.geom2),
-                (Thing::Body, &mut between.body2),
+                (ElementKind::Geom, &mut between.geom1),
+                (ElementKind::Body, &mut between.body1),
+                (ElementKind::Geom, &mut between.geom2),
+                (ElementKind::Body, &mut between.body2),
             ];
             let given = named
                 .into_iter()
@@ -270,25 +285,25 @@ fn measured(object: &mut Object) -> Vec<(Thing, &mut String)> {
         }
         Object::User(user) => {
             let kind = match user.objtype {
-                Some(ObjType::Joint) => Thing::Joint,
-                Some(ObjType::Geom) => Thing::Geom,
-                Some(ObjType::Site) => Thing::Site,
-                Some(ObjType::Camera) => Thing::Camera,
-                Some(ObjType::Tendon) => Thing::Tendon,
-                Some(ObjType::Actuator) => Thing::Actuator,
-                _ => Thing::Body,
+                Some(ObjType::Joint) => ElementKind::Joint,
+                Some(ObjType::Geom) => ElementKind::Geom,
+                Some(ObjType::Site) => ElementKind::Site,
+                Some(ObjType::Camera) => ElementKind::Camera,
+                Some(ObjType::Tendon) => ElementKind::Tendon,
+                Some(ObjType::Actuator) => ElementKind::Actuator,
+                _ => ElementKind::Body,
             };
             user.objname.iter_mut().map(|name| (kind, name)).collect()
         }
     }
 }
 
-fn framed(of: FrameOf) -> Thing {
+fn framed(of: FrameOf) -> ElementKind {
     match of {
-        FrameOf::Body | FrameOf::XBody => Thing::Body,
-        FrameOf::Geom => Thing::Geom,
-        FrameOf::Site => Thing::Site,
-        FrameOf::Camera => Thing::Camera,
+        FrameOf::Body | FrameOf::XBody => ElementKind::Body,
+        FrameOf::Geom => ElementKind::Geom,
+        FrameOf::Site => ElementKind::Site,
+        FrameOf::Camera => ElementKind::Camera,
     }
 }
 
@@ -358,19 +373,19 @@ pub(super) fn na(actuator: &Actuator) -> usize {
 }
 
 /// Returns the kinds and names of what hangs on a body.
-pub(super) fn hanging(body: &Body) -> impl Iterator<Item = (Thing, &String)> {
-    let joints = body.joints.iter().map(|joint| (Thing::Joint, &joint.name));
-    let geoms = body.geoms.iter().map(|geom| (Thing::Geom, &geom.name));
-    let sites = body.sites.iter().map(|site| (Thing::Site, &site.name));
-    let cameras = body.cameras.iter().map(|camera| (Thing::Camera, &camera.name));
-    let own = std::iter::once((Thing::Body, &body.name));
+pub(super) fn hanging(body: &Body) -> impl Iterator<Item = (ElementKind, &String)> {
+    let joints = body.joints.iter().map(|joint| (ElementKind::Joint, &joint.name));
+    let geoms = body.geoms.iter().map(|geom| (ElementKind::Geom, &geom.name));
+    let sites = body.sites.iter().map(|site| (ElementKind::Site, &site.name));
+    let cameras = body.cameras.iter().map(|camera| (ElementKind::Camera, &camera.name));
+    let own = std::iter::once((ElementKind::Body, &body.name));
     own.chain(joints).chain(geoms).chain(sites).chain(cameras)
 }
 
 /// A reference of an element of a model to one that did not come along, and its name: then the element did not, either.
 pub(super) struct Absent {
     pub at: usize,
-    pub thing: Thing,
+    pub thing: ElementKind,
     pub name: String,
 }
 

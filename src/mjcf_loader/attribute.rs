@@ -119,17 +119,17 @@ impl<T: Copy + PartialEq> Words<T> {
     }
 
     pub fn visit(self, field: &mut impl Worded<T>, visit: Visit) {
-        visit(&mut Saying { words: self, field });
+        visit(&mut WordField { words: self, field });
     }
 }
 
 /// A field together with the words for what it holds.
-struct Saying<'a, T: 'static, W> {
+struct WordField<'a, T: 'static, W> {
     words: Words<T>,
     field: &'a mut W,
 }
 
-impl<T: Copy + PartialEq, W: Worded<T>> Store for Saying<'_, T, W> {
+impl<T: Copy + PartialEq, W: Worded<T>> Store for WordField<'_, T, W> {
     fn store(&mut self, value: &Value) {
         if let Value::Word(index) = value
             && let Some(value) = self.words.values.get(*index)

@@ -74,7 +74,7 @@ table! {
 
 /// The elements of an equality, by name.
 #[derive(Clone)]
-pub(super) enum Held {
+pub(super) enum EqualityElements {
     Joint(JointEquality),
     Tendon(TendonEquality),
     Connect(Ends),
@@ -84,7 +84,7 @@ pub(super) enum Held {
 table! {
     /// Attributes of all equalities.
     element Equality {
-        also held: Held = Held::Joint(JointEquality::initial());
+        also held: EqualityElements = EqualityElements::Joint(JointEquality::initial());
         "name" name: String = String::new(), TEXT, own, "Name.";
         "active" active: bool = true, FLAG, "Whether it holds after a reset.";
         "solref" solref: [f64; 2] = SOLREF, some(1, 2, Any), "`solref` of the constraint.";
@@ -97,10 +97,10 @@ impl Equality {
     pub fn hold(&mut self, e: &Element) -> Result<(), &'static str> {
         self.apply(e);
         self.held = match e.name {
-            "connect" => Held::Connect(Ends::read(e)),
-            "tendon" => Held::Tendon(TendonEquality::read(e)),
-            "weld" => Held::Weld(WeldEquality::read(e)),
-            "joint" => Held::Joint(JointEquality::read(e)),
+            "connect" => EqualityElements::Connect(Ends::read(e)),
+            "tendon" => EqualityElements::Tendon(TendonEquality::read(e)),
+            "weld" => EqualityElements::Weld(WeldEquality::read(e)),
+            "joint" => EqualityElements::Joint(JointEquality::read(e)),
             _ => return Err(UNREAD),
         };
         Ok(())

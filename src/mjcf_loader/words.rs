@@ -130,17 +130,17 @@ impl<const N: usize> Rotation<N> {
     }
 
     fn visit(self, field: &mut Orientation, visit: Visit) {
-        visit(&mut Turned { rotation: self, field });
+        visit(&mut RotationField { rotation: self, field });
     }
 }
 
 /// A field together with a way to write it.
-struct Turned<'a, const N: usize> {
+struct RotationField<'a, const N: usize> {
     rotation: Rotation<N>,
     field: &'a mut Orientation,
 }
 
-impl<const N: usize> Store for Turned<'_, N> {
+impl<const N: usize> Store for RotationField<'_, N> {
     fn store(&mut self, value: &Value) {
         if let Value::Reals(values) = value
             && let Ok(values) = values[..].try_into()

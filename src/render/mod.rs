@@ -61,7 +61,7 @@ pub use renderer::Renderer;
 pub use renderer::SharedMemory;
 pub use scenery::Scenery;
 pub use scenery::{Aim, Camera, LightSource};
-pub use skin::Worn;
+pub use skin::PosedSkins;
 pub use texture::{Face, Level, MAX_TEXTURE, TexturePixels};
 pub use view::{FreeCamera, ImageBuffers, Poses, RenderRequest, View};
 

@@ -213,7 +213,7 @@ impl Scenery {
         })
     }
 
-    /// Returns the mesh of a drawable; that of a skin is as the model has it, and has no normals: [`Worn`](crate::Worn) has those of a moment.
+    /// Returns the mesh of a drawable; that of a skin is as the model has it, and has no normals: [`PosedSkins`](crate::PosedSkins) has those of a moment.
     pub fn mesh_of(&self, drawable: &Drawable) -> Option<&Mesh> {
         let worn = self.skins.iter().flat_map(SkinLook::meshes);
         self.meshes.iter().chain(worn).nth(drawable.mesh)

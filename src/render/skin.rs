@@ -103,16 +103,16 @@ fn parts(skin: &model::Skin) -> Vec<Part> {
     parts
 }
 
-/// The skins of a scene as some poses have them. It keeps its memory from one picture to the next.
+/// The skins of a scene in given poses. Its buffers are reused from one picture to the next.
 #[derive(Clone, Debug, Default)]
-pub struct Worn {
+pub struct PosedSkins {
     /// The meshes of all skins, in the order of the scenery.
     meshes: Vec<Mesh>,
     place: Vec<[f32; 3]>,
     normal: Vec<[f32; 3]>,
 }
 
-impl Worn {
+impl PosedSkins {
     /// Moves all skins.
     pub fn update(&mut self, scenery: &Scenery, poses: &Poses) {
         let parts = || scenery.skins.iter().flat_map(|skin| &skin.parts);

@@ -4,7 +4,7 @@ use super::context::{Context, Ids};
 use crate::error::LoadError;
 use crate::math::{Quat, Vec3, quat_conj, quat_mul, quat_normalize};
 use crate::model::{Arrays, EqualityKind};
-use crate::relation::{Ends, Equality, Held, JointEquality, TendonEquality, WeldEquality};
+use crate::relation::{Ends, Equality, EqualityElements, JointEquality, TendonEquality, WeldEquality};
 
 /// Compiles an equality. What bodies have of each other at `qpos0` needs kinematics: until then the point of a connection in its second
 /// body is its origin, and the quaternion of a weld without a pose of its own is zero.
@@ -21,10 +21,10 @@ pub(super) fn compile_equality(
         at: equality.at,
     };
     let kind = match &equality.held {
-        Held::Joint(joint) => scope.joint(joint)?,
-        Held::Tendon(tendon) => scope.tendon(tendon)?,
-        Held::Connect(ends) => scope.connect(ends)?,
-        Held::Weld(weld) => scope.weld(weld)?,
+        EqualityElements::Joint(joint) => scope.joint(joint)?,
+        EqualityElements::Tendon(tendon) => scope.tendon(tendon)?,
+        EqualityElements::Connect(ends) => scope.connect(ends)?,
+        EqualityElements::Weld(weld) => scope.weld(weld)?,
     };
     arrays.eq_name.push(equality.name.clone());
     arrays.eq_kind.push(kind);

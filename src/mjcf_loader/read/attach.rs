@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use super::super::attached::{Absent, Amount, Referring, Thing, hanging};
+use super::super::attached::{Absent, Amount, ElementKind, Referring, hanging};
 use super::super::compile::stem;
 use super::super::document::{Attach, Body, Document};
 use super::super::error::{ErrorKind, LoadError};
@@ -33,17 +33,17 @@ fn unknown(tree: &Tree, attach: &Attach, kind: &'static str, name: &str) -> Load
 }
 
 /// The part of a model that an `<attach>` takes.
-pub(super) struct Taking<'a> {
+pub(super) struct AttachedPart<'a> {
     prefix: &'a str,
     /// The bodies of the model that come along.
     pub bodies: std::ops::Range<usize>,
     /// The names in the model of what comes along.
-    names: BTreeSet<(Thing, String)>,
+    names: BTreeSet<(ElementKind, String)>,
     /// Where the first body is put in the document.
     pub base: usize,
 }
 
-impl Taking<'_> {
+impl AttachedPart<'_> {
     /// Changes a name to that in the document.
     fn rename(&self, name: &mut String) {
         if !name.is_empty() {
@@ -71,8 +71,8 @@ impl Taking<'_> {
     }
 
     /// Tells whether something of the model comes along.
-    fn has(&self, thing: Thing, name: &str) -> bool {
-        let world = thing == Thing::Body && name == "world" && self.prefix.is_empty();
+    fn has(&self, thing: ElementKind, name: &str) -> bool {
+        let world = thing == ElementKind::Body && name == "world" && self.prefix.is_empty();
         world || self.names.contains(&(thing, name.to_owned()))
     }
 
@@ -87,8 +87,8 @@ impl Taking<'_> {
         let mut names = element.names();
         let some = T::LOOSE && names.iter().any(|(thing, name)| self.has(*thing, name));
         // MuJoCo looks for the second name as it is where the first one comes along
-        let world = |thing: Thing, name: &str| some && thing == Thing::Body && name == "world";
-        let there = |thing: Thing, name: &str| self.has(thing, name) || world(thing, name);
+        let world = |thing: ElementKind, name: &str| some && thing == ElementKind::Body && name == "world";
+        let there = |thing: ElementKind, name: &str| self.has(thing, name) || world(thing, name);
         let whole = names.iter().all(|(thing, name)| there(*thing, name));
         for (thing, name) in &mut names {
             let (thing, found) = (*thing, self.has(*thing, name));
@@ -136,7 +136,7 @@ fn take(
     };
     // children follow their parents, depth first
     let below = bodies[root + 1..].iter().take_while(|body| body.parent >= root).count();
-    let mut taking = Taking {
+    let mut taking = AttachedPart {
         prefix: &attach.prefix,
         bodies: root..root + 1 + below,
         names: BTreeSet::new(),
@@ -156,7 +156,7 @@ fn take(
 
 /// Copies bodies with what hangs on them, and the frames that they stand in. What keyframes say of a body goes with it; one that does not
 /// come along keeps it for the next time that something is taken.
-fn take_tree(taking: &Taking, from: &mut Document, spot: Spot, document: &mut Document) {
+fn take_tree(taking: &AttachedPart, from: &mut Document, spot: Spot, document: &mut Document) {
     let bodies = &from.bodies[taking.bodies.clone()];
     let mut used = vec![false; from.frames.len()];
     let inner = bodies.iter().skip(1).filter_map(|body| body.within);
@@ -204,7 +204,7 @@ fn withins(body: &Body) -> impl Iterator<Item = usize> {
 }
 
 /// Changes the names of a body and of what hangs on it; `moved` tells where frames are now.
-fn take_body(taking: &Taking, body: &mut Body, moved: impl Fn(Option<usize>) -> Option<usize>) {
+fn take_body(taking: &AttachedPart, body: &mut Body, moved: impl Fn(Option<usize>) -> Option<usize>) {
     taking.rename(&mut body.name);
     for joint in &mut body.joints {
         taking.rename(&mut joint.name);
@@ -235,7 +235,7 @@ fn take_body(taking: &Taking, body: &mut Body, moved: impl Fn(Option<usize>) -> 
 }
 
 /// Copies assets, skins and custom data, whether anything refers to them or not.
-fn take_assets(taking: &Taking, from: &Document, document: &mut Document) {
+fn take_assets(taking: &AttachedPart, from: &Document, document: &mut Document) {
     for texture in &from.textures {
         let mut texture = texture.clone();
         taking.rename_asset(&mut texture.name, texture.file.as_deref());
@@ -258,7 +258,7 @@ fn take_assets(taking: &Taking, from: &Document, document: &mut Document) {
         document.hfields.push(hfield);
     }
     for skin in &from.skins {
-        if skin.bones.iter().all(|bone| taking.has(Thing::Body, &bone.body)) {
+        if skin.bones.iter().all(|bone| taking.has(ElementKind::Body, &bone.body)) {
             // MuJoCo 3.3.0 gives the name of a skin no prefix
             let mut skin = skin.clone();
             taking.refer_asset(&mut skin.material);
@@ -279,7 +279,7 @@ fn take_assets(taking: &Taking, from: &Document, document: &mut Document) {
 }
 
 /// Copies what refers to others, if they come along.
-fn take_referring(taking: &mut Taking, from: &mut Document, document: &mut Document) {
+fn take_referring(taking: &mut AttachedPart, from: &mut Document, document: &mut Document) {
     let absent = &mut document.absent;
     taking.copy(&from.pairs, &mut document.pairs, absent);
     taking.copy(&from.excludes, &mut document.excludes, absent);
@@ -289,7 +289,7 @@ fn take_referring(taking: &mut Taking, from: &mut Document, document: &mut Docum
         .iter()
         .zip(&tendons)
         .filter(|(tendon, place)| place.is_some() && !tendon.name.is_empty());
-    let names = names.map(|(tendon, _)| (Thing::Tendon, tendon.name.clone()));
+    let names = names.map(|(tendon, _)| (ElementKind::Tendon, tendon.name.clone()));
     taking.names.extend(names);
     taking.copy(&from.equalities, &mut document.equalities, absent);
     let actuators = taking.copy(&from.actuators, &mut document.actuators, absent);
@@ -298,7 +298,7 @@ fn take_referring(taking: &mut Taking, from: &mut Document, document: &mut Docum
         .iter()
         .zip(&actuators)
         .filter(|(one, place)| place.is_some() && !one.name.is_empty());
-    let names = names.map(|(actuator, _)| (Thing::Actuator, actuator.name.clone()));
+    let names = names.map(|(actuator, _)| (ElementKind::Actuator, actuator.name.clone()));
     taking.names.extend(names);
     taking.copy(&from.sensors, &mut document.sensors, absent);
     let taken = from
@@ -317,11 +317,11 @@ pub(super) fn check_absent(tree: &Tree, document: &Document) -> Result<(), LoadE
     let tendons = document
         .tendons
         .iter()
-        .map(|tendon| (Thing::Tendon, tendon.name.as_str()));
+        .map(|tendon| (ElementKind::Tendon, tendon.name.as_str()));
     let actuators = document
         .actuators
         .iter()
-        .map(|actuator| (Thing::Actuator, actuator.name.as_str()));
+        .map(|actuator| (ElementKind::Actuator, actuator.name.as_str()));
     let hung = document.bodies.iter().flat_map(hanging);
     let hung = hung.map(|(thing, name)| (thing, name.as_str()));
     let names = order::set(hung.chain(tendons).chain(actuators));

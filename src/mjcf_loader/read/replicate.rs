@@ -4,7 +4,7 @@
 //! bodies in it, with the number of the copy behind their names. Elements outside that refer to it by name are copied beside it, as far as
 //! all or, of some kinds, a part of what they refer to was copied; those that refer to the original go with it.
 
-use super::super::attached::{Known, Referring, Thing, hanging, said};
+use super::super::attached::{ElementKind, Known, Referring, hanging, said};
 use super::super::document::{Body, BodyFrame, Copied, Document, Orientation, Replicate};
 use super::super::error::{ErrorKind, LoadError};
 use super::super::schema::Element;
@@ -261,11 +261,11 @@ fn copy_referring(suffix: &str, names: &mut Known, document: &mut Document) {
     copy_list(&mut document.excludes, suffix, names);
     let tendons = copy_list(&mut document.tendons, suffix, names);
     let tendons = &document.tendons[tendons..];
-    names.add(tendons.iter().map(|tendon| (Thing::Tendon, &tendon.name)));
+    names.add(tendons.iter().map(|tendon| (ElementKind::Tendon, &tendon.name)));
     copy_list(&mut document.equalities, suffix, names);
     let actuators = copy_list(&mut document.actuators, suffix, names);
     let actuators = &document.actuators[actuators..];
-    names.add(actuators.iter().map(|actuator| (Thing::Actuator, &actuator.name)));
+    names.add(actuators.iter().map(|actuator| (ElementKind::Actuator, &actuator.name)));
     copy_list(&mut document.sensors, suffix, names);
 }
 
@@ -289,11 +289,11 @@ fn forget_lost(before: &Known, document: &mut Document) {
     keep(&mut document.pairs, before, &now);
     keep(&mut document.excludes, before, &now);
     for mut tendon in keep(&mut document.tendons, before, &now) {
-        now.remove(Thing::Tendon, tendon.name());
+        now.remove(ElementKind::Tendon, tendon.name());
     }
     keep(&mut document.equalities, before, &now);
     for mut actuator in keep(&mut document.actuators, before, &now) {
-        now.remove(Thing::Actuator, actuator.name());
+        now.remove(ElementKind::Actuator, actuator.name());
     }
     keep(&mut document.sensors, before, &now);
 }

@@ -9,7 +9,7 @@ use super::target::{Target, Triangle};
 use crate::RenderError;
 use crate::drawable::{BEHIND, Drawable, OPAQUE, Shape};
 use crate::scenery::Scenery;
-use crate::skin::Worn;
+use crate::skin::PosedSkins;
 use crate::view::{Poses, View};
 
 /// The geometry of an image.
@@ -24,7 +24,7 @@ pub struct Frame {
     /// Width and height, pixels.
     pub size: [usize; 2],
     /// The skins.
-    pub worn: Worn,
+    pub skins: PosedSkins,
     /// Projected vertices of everything that is drawn.
     pub vertices: Vec<Vertex>,
     /// Their positions, 1/256 pixels from the lower left, rounded to whole numbers.
@@ -116,7 +116,7 @@ impl Frame {
         scenery.check(poses, view)?;
         let eye = Eye::new(scenery, poses, view);
         self.clear(scenery, view, targets);
-        self.worn.update(scenery, poses);
+        self.skins.update(scenery, poses);
         for (i, drawable) in scenery.drawables.iter().enumerate() {
             let Some((drawable, pos, mat)) = drawable.placed(poses) else {
                 continue;
@@ -218,7 +218,7 @@ impl Frame {
             mat: mat.map(|v| v as f32),
             rows: eye.model(pos, &mat, drawable.size),
             base: self.vertices.len(),
-            end: self.vertices.len() + self.worn.mesh(scenery, drawable).x.len(),
+            end: self.vertices.len() + self.skins.mesh(scenery, drawable).x.len(),
             points: self.points.len(),
             transparent,
             ..self.draws[index]

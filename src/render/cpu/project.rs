@@ -19,8 +19,8 @@ use crate::scenery::Scenery;
 impl Frame {
     /// Projects and draws a drawable, of which the index is given, too.
     pub fn add(&mut self, scenery: &Scenery, drawable: &Drawable, eye: &Eye, index: usize) {
-        let worn = std::mem::take(&mut self.worn);
-        let mesh = worn.mesh(scenery, drawable);
+        let skins = std::mem::take(&mut self.skins);
+        let mesh = skins.mesh(scenery, drawable);
         let draw = self.draws[index];
         self.vertices.resize(draw.end, Vertex::default());
         self.x.resize(draw.end, 0.0);
@@ -53,7 +53,7 @@ impl Frame {
             }
         }
         self.flush(index);
-        self.worn = worn;
+        self.skins = skins;
     }
 
     /// Finds the quadrilaterals of a band that may show their front, and their vertices.

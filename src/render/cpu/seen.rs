@@ -210,7 +210,7 @@ impl Seen {
                 continue;
             };
             let drawable = &drawable;
-            let mesh = frame.worn.mesh(scenery, drawable);
+            let mesh = frame.skins.mesh(scenery, drawable);
             let (mut batch, mut count) = ([0; 4], 0);
             for first in (draw.base..draw.end).step_by(STRIDE) {
                 // bands are filled up with vertices, so that their number is a multiple

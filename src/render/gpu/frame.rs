@@ -7,7 +7,7 @@ use crate::RenderRequest;
 use crate::cpu::{Eye, PlacedLight, V3, dot, place_lights, single};
 use crate::drawable::{BEHIND, Drawable, Element, OPAQUE, Shape};
 use crate::scenery::Scenery;
-use crate::skin::Worn;
+use crate::skin::PosedSkins;
 
 /// Number of values per instance: the attributes of the shader's `Vertex` from `row_x` on.
 pub const INSTANCE: usize = 44;
@@ -23,7 +23,7 @@ pub struct Call {
     pub first: u32,
     pub count: u32,
     /// First vertex of a skin in [`Frame::worn_vertices`].
-    pub worn: Option<i32>,
+    pub skins: Option<i32>,
 }
 
 /// The calls for one view, clipped to its image.
@@ -58,7 +58,7 @@ pub struct Frame {
     pub worn_vertices: Vec<f32>,
     /// First vertex of each mesh of the skins, view by view.
     worn_starts: Vec<i32>,
-    worn: Worn,
+    skins: PosedSkins,
     eyes: Vec<Eye>,
     lights: Vec<PlacedLight>,
     /// View and drawable of the opaque drawables inside the view, for each class.
@@ -137,8 +137,8 @@ impl Frame {
             return;
         }
         for request in r.requests {
-            self.worn.update(r.scenery, &request.poses);
-            for mesh in self.worn.meshes() {
+            self.skins.update(r.scenery, &request.poses);
+            for mesh in self.skins.meshes() {
                 self.worn_starts.push((self.worn_vertices.len() / VERTEX) as i32);
                 add_vertices(mesh, &mut self.worn_vertices);
             }
@@ -269,17 +269,17 @@ impl Frame {
             return;
         };
         let first = self.instances.len() as u32;
-        let worn = r.scene.classes[class].worn.map(|mesh| {
+        let skins = r.scene.classes[class].worn.map(|mesh| {
             let meshes = self.worn_starts.len() / r.requests.len();
             self.worn_starts[view * meshes + mesh]
         });
         match self.calls[start..].last_mut() {
-            Some(call) if (call.class, call.worn) == (class, worn) => call.count += 1,
+            Some(call) if (call.class, call.skins) == (class, skins) => call.count += 1,
             _ => self.calls.push(Call {
                 class,
                 first,
                 count: 1,
-                worn,
+                skins,
             }),
         }
         self.instances.push(instance);

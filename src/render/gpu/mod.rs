@@ -381,7 +381,7 @@ impl Pass<'_, '_> {
                 self.texture(texture);
             }
             let instances = call.first..call.first + call.count;
-            match call.worn {
+            match call.skins {
                 None => self.pass.draw_indexed(class.indices.clone(), 0, instances),
                 Some(first) => {
                     self.pass.set_vertex_buffer(0, r.buffers.worn.slice(..));

@@ -31,7 +31,7 @@ struct Contacts {
 
 /// The counters of the behavior in each step.
 #[derive(Debug, Default)]
-struct Told {
+struct BehaviorRows {
     first_touch_step: Vec<i32>,
     first_touch_hand: Vec<u8>,
     first_touch_geom: Vec<i32>,
@@ -68,7 +68,7 @@ pub(super) struct Rows {
     reward: Vec<f64>,
     terminated: Vec<u8>,
     truncated: Vec<u8>,
-    told: Told,
+    told: BehaviorRows,
     senses: Vec<(&'static ObservationEntry, Array)>,
     eye_steps: Vec<i32>,
     eye_sizes: [[usize; 2]; 2],
@@ -141,7 +141,7 @@ impl Rows {
             .into_iter()
             .for_each(Vec::clear);
         self.reward.clear();
-        self.told = Told::default();
+        self.told = BehaviorRows::default();
         self.senses.clear();
         self.eye_steps.clear();
     }
@@ -290,7 +290,7 @@ impl Contacts {
     }
 }
 
-impl Told {
+impl BehaviorRows {
     /// Records the touches before the first step, for lists that continue from episode to episode.
     fn begin(&mut self, behavior: &BehaviorInfo) {
         self.touched = behavior.touches().map_or([0; 2], |touches| touches.map(<[usize]>::len));

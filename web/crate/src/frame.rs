@@ -3,13 +3,13 @@
 use babybench::math::mat_t_vec;
 use babybench::model::Model;
 use babybench::physics::State;
-use babybench::render::{Poses, Scenery, Worn};
+use babybench::render::{PosedSkins, Poses, Scenery};
 use babybench::sensors::Touch;
 
 /// Poses, feelings and contacts of one moment.
 #[derive(Default)]
 pub struct Frame {
-    skins: Worn,
+    skins: PosedSkins,
     /// For each thing that is drawn (12): position, m, and rotation matrix, row by row, whose columns are as long as the thing
     /// has grown since it was compiled.
     pub poses: Vec<f32>,
