@@ -29,7 +29,7 @@ for release; do
   else
     # outside the source tree, so that the wheel is what is tested
     result=$(cd "$work" && "$work/venv/bin/pytest" -q -c "$root/pyproject.toml" --rootdir "$root" \
-      "$root/tests/test_mujoco_release.py" 2>&1 | tee "$work/log" | tail -n 1) || true
+      "$root/tests/test_kit_release.py" 2>&1 | tee "$work/log" | tail -n 1) || true
   fi
   printf '%-8s %s\n' "$release" "$result"
   if [[ $result != *passed* || $result == *failed* || $result == *error* ]]; then

@@ -25,7 +25,7 @@ for name in ("mujoco", "mimoEnv"):
     except ModuleNotFoundError as error:
         print(f"no {name}" if error.name == name else error.name)
     else:
-        print("MuJoCo's" if hasattr(module, "mj_saveLastXML") else "babybench-kit's")
+        print("babybench-kit's" if "babybench_kit" in module.__file__ else "MuJoCo's")
 """
 NEITHER, KIT, BOTH, MUJOCO_ALONE = (
     ["no mujoco", "no mimoEnv"],

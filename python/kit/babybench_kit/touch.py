@@ -19,7 +19,8 @@ from .replaceable import Replaceable, replaced
 from .utils import EPS
 
 if TYPE_CHECKING:
-    from ..records import TouchBody
+    from babybench_core.records import TouchBody
+
     from .sensing import SensingEnv
 
 Array = NDArray[np.float64]
