@@ -4,6 +4,7 @@
 #   steps_of PART           sets the part that the following steps belong to
 #   step NAME COMMAND...    runs a command or a function under `set -e` and records the result; never call it in a condition
 #   must NAME COMMAND...    the same, but ends the script if the step fails
+#   call PART COMMAND...    runs a script that has steps of its own
 #   lack NAME REASON        records that this machine cannot run a step: ignored, or failed if BABYBENCH_TESTS=required
 #   finish                  ends the script, with status 1 if a step failed; the outermost script prints the summary
 # target/tests holds `results` and `ignored` (tab-separated), `summary`, and a log for each step. Nested scripts find the folder in
@@ -84,6 +85,12 @@ must() { # NAME COMMAND...
   if [ "$step_code" -ne 0 ]; then finish; fi
 }
 
+call() { # PART COMMAND...
+  local code=0
+  "${@:2}" || code=$?
+  if [ "$code" -ne 0 ] && ! has_failed "$1"; then part=$1 note "${*:2}" failed 0 "ended with status $code outside of a step"; fi
+}
+
 lack() { # NAME REASON
   if [ "${BABYBENCH_TESTS:-}" = required ]; then
     note "$1" failed 0 "required, but missing: $2"
@@ -114,15 +121,16 @@ summary() {
     END { if (failed) printf "FAILED after %s:%s\n", took, failed; else printf "nothing failed; it took %s\n", took }' "$notes/results"
 }
 
-failed_here() { # succeeds if a step of this part failed; in the outermost script, if any step failed
-  awk -F '\t' -v part="$part" -v all="$outermost" '$3 == "failed" && (all || $1 == part) { found = 1 } END { exit !found }' "$notes/results"
+has_failed() { # [PART]: succeeds if a step failed, of this part or of any
+  awk -F '\t' -v part="${1:-}" '$3 == "failed" && (part == "" || $1 == part) { found = 1 } END { exit !found }' "$notes/results"
 }
 
 finish() {
   if [ -n "$outermost" ]; then
     echo
     summary | tee "$notes/summary"
+    part=''
   fi
-  if failed_here; then exit 1; fi
+  if has_failed "$part"; then exit 1; fi
   exit 0
 }

@@ -33,8 +33,7 @@ parts=${*:-rust python web}
 case $parts in
   quick)
     export QUICK=yes
-    steps_of lints
-    step 'quick lints' scripts/lint.sh quick
+    call lints scripts/lint.sh quick
     parts=$(scripts/changed.sh)
     parts=${parts/fuzz/} # takes minutes
     echo "changed against main: ${parts:-nothing that tests concern}"
@@ -50,8 +49,8 @@ done
 for part_of_tests in $parts; do
   case $part_of_tests in
     rust) rust ;;
-    python) .ci/python || true ;;
-    web) .ci/web || true ;;
+    python) call python .ci/python ;;
+    web) call web .ci/web ;;
     fuzz) steps_of fuzz; step 'every target' fuzz/run all 20000 ;;
   esac
 done

@@ -7,11 +7,11 @@ use conformance::live::Case;
 use conformance::live::one_step::{OneStep, TIGHT, one_step};
 use conformance::measure::{Summary, only_print};
 use conformance::mujoco::{MUJOCO, needed};
-use testkit::harness::Trial;
+use testkit::harness::{TIME, Trial};
 use testkit::{show, trials};
 
 pub fn trials() -> Vec<Trial> {
-    trials![needs MUJOCO: steps_from_states_of_mujoco_are_mujocos, the_error_falls_with_the_tolerance_of_the_solvers]
+    trials![needs MUJOCO, TIME: steps_from_states_of_mujoco_are_mujocos, the_error_falls_with_the_tolerance_of_the_solvers]
 }
 
 fn states() -> usize {

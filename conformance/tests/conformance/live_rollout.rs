@@ -5,11 +5,11 @@ use conformance::live::statistics::spreads;
 use conformance::live::{Case, Motion};
 use conformance::measure::{Summary, only_print};
 use conformance::mujoco::{MUJOCO, Mujoco, needed};
-use testkit::harness::Trial;
+use testkit::harness::{TIME, Trial};
 use testkit::{show, trials};
 
 pub fn trials() -> Vec<Trial> {
-    trials![needs MUJOCO: rollouts_stay_within_three_floors, passive_motion_stays_within_ten_nanoradians, contacts_carry_the_weight_of_a_resting_mimo, statistics_of_long_rollouts_are_inside_the_spread_of_mujocos_seeds]
+    trials![needs MUJOCO, TIME: rollouts_stay_within_three_floors, passive_motion_stays_within_ten_nanoradians, contacts_carry_the_weight_of_a_resting_mimo, statistics_of_long_rollouts_are_inside_the_spread_of_mujocos_seeds]
 }
 
 /// Optimised builds do the full numbers.
