@@ -13,5 +13,9 @@ if [ "$(id -u)" -ne 0 ]; then
   as_root='sudo -n'
 fi
 echo "installing ${packages[*]}"
-$as_root env DEBIAN_FRONTEND=noninteractive apt-get update -qq
-$as_root env DEBIAN_FRONTEND=noninteractive apt-get install -qq -y --no-install-recommends "${packages[@]}" >/dev/null
+mkdir -p "$(dirname "$0")/../target"
+exec 9>"$(dirname "$0")/../target/install.lock"
+flock 9 # parts of the tests that run side by side take turns
+apt() { $as_root env DEBIAN_FRONTEND=noninteractive apt-get -qq -o DPkg::Lock::Timeout=600 "$@"; }
+apt update || echo 'package lists are not refreshed' >&2
+apt install -y --no-install-recommends "${packages[@]}" >/dev/null

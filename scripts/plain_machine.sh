@@ -26,7 +26,7 @@ first=$(command_of_readme 'cargo run ')
 second=$(command_of_readme 'scripts/test.sh')
 if [ -z "$first" ] || [ -z "$second" ]; then die 'README.md has no block with `cargo run ...` and `scripts/test.sh`'; fi
 [ "$(id -u)" -eq 0 ] || die 'must be root: it makes systems to change into'
-command -v debootstrap >/dev/null || { apt-get update -qq && apt-get install -qq -y --no-install-recommends debootstrap; }
+command -v debootstrap >/dev/null || scripts/install.sh debootstrap
 commit=$(git rev-parse --short HEAD)
 if [ -n "$(git status --porcelain)" ]; then say "changes that are not committed are left out: this is $commit"; fi
 
