@@ -6,8 +6,8 @@ import { chromium } from "playwright-core";
 const CHROMIUM = process.env.CHROMIUM ?? "/usr/bin/chromium";
 export const FIREFOX = process.env.FIREFOX ?? "/usr/bin/firefox-esr";
 
-/** Why a test that needs the browser cannot run, as `skip` of node's tests has it. */
-const missing = (/** @type {string} */ program, /** @type {string} */ variable) => !existsSync(program) && `${program || "no browser"} is not there: ${variable} names another`;
+/** Returns why tests in a browser are skipped, or false if there is one. */
+const missing = (/** @type {string} */ program, /** @type {string} */ variable) => !existsSync(program) && (program ? `there is no ${program}` : `${variable} names no browser`);
 export const noChromium = missing(CHROMIUM, "CHROMIUM");
 export const noFirefox = missing(FIREFOX, "FIREFOX");
 
