@@ -19,6 +19,7 @@ __all__ = [
     "Blocks",
     "Blueprint",
     "Env",
+    "Folder",
     "Parts",
     "PhysicsData",
     "PhysicsModel",

@@ -96,14 +96,15 @@ def rows_of(name: str, element: object, blueprint: _native.Blueprint) -> Any:
 
 
 def element_of(name: str, kind: str, element: object, blueprint: _native.Blueprint) -> int:
-    """Returns the number of an element: a name as the document gives it, or of a geom as ``env.geom_names`` does.
+    """Returns the number of an element: a name as the document gives it, or of a geom that of its part.
 
     Raises:
         KeyError: There is no such element.
     """
     names = names_of(kind, blueprint)
-    if isinstance(element, str) and element in names:
-        return names.index(element)
+    for known_names in (names, part_names(blueprint) if kind == "geom" else []):
+        if isinstance(element, str) and element and element in known_names:
+            return known_names.index(element)
     known = [known_name for known_name in names if known_name]
     raise KeyError(f"{name}: there is no {kind} {element!r}{hints.nearest(str(element), known)}")
 
@@ -186,19 +187,20 @@ def options_of(options: object, known: Sequence[str] = OPTIONS) -> Mapping[str, 
     return options
 
 
-def of_vector(name: str, wanted: Any, count: int) -> list[Any]:
-    """Returns an option for each environment of a vector: one value for all, or a list with one for each.
+def of_vector(name: str, wanted: Any, count: int, one: type) -> list[Any]:
+    """Returns an option for each environment of a vector: one value of a type for all, or a list with one for each.
 
     Raises:
         TypeError: Something else.
         ValueError: A list of another length.
     """
-    if wanted is None or isinstance(wanted, Mapping) or (np.ndim(wanted) == 0 and np.isscalar(wanted)):
+    if wanted is None or isinstance(wanted, one):
         return [wanted] * count
     try:
         each = list(wanted)
     except TypeError:
-        raise TypeError(f"options[{name!r}] is {wanted!r}, expected one value or a list of {count} of them") from None
+        what = "a mapping" if one is Mapping else "a number"
+        raise TypeError(f"options[{name!r}] is {wanted!r}, expected {what} or a list of {count} of them") from None
     if len(each) != count:
         raise ValueError(f"options[{name!r}] has {len(each)} entries, but there are {count} environments")
     return each

@@ -377,7 +377,7 @@ class Env(gymnasium.Env[Observation, npt.NDArray[Any]]):
 
         Example:
             >>> import babybench
-            >>> env = babybench.make("self_touch", touch_grows=True)
+            >>> env = babybench.make("self_touch", touch_grows=True, age=1)
             >>> for age in (3, 6):
             ...     env.set_age(age)
             ...     observation, info = env.reset(seed=0)

@@ -47,8 +47,8 @@ def read_config(config: ConfigLike = None, **keys: object) -> dict[str, Any]:
         found = config
     elif not isinstance(config, (str, os.PathLike)):
         raise TypeError(
-            f"a configuration is a mapping, the name of an example, or the path of a YAML file, not {config!r} (a list of "
-            "configurations makes a VectorEnv)"
+            f"a configuration is a mapping, the name of an example, or the path of a YAML file, not the "
+            f"{type(config).__name__} {config!r} (a list of configurations makes a VectorEnv)"
         )
     else:
         examples = config_examples()

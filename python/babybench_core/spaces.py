@@ -20,8 +20,29 @@ def observation_space(core: _native.Env | _native.VectorEnv) -> Any:
     boxes: dict[str, spaces.Space[Any]] = {}
     for key, shape, dtype, low, high in core.observation_spaces:
         kind = np.dtype(dtype).type
-        boxes[key] = spaces.Box(kind(low), kind(high), tuple(shape), kind)
+        boxes[key] = _box(low, high, tuple(shape), kind)
     return spaces.Dict(boxes)
+
+
+def batch(single: Any, count: int) -> Any:
+    """Returns the space of the observations of many environments, a row for each."""
+    boxes = single.spaces.items()
+    return spaces.Dict(
+        {key: _box(box.low.flat[0], box.high.flat[0], (count, *box.shape), box.dtype) for key, box in boxes}
+    )
+
+
+def _box(low: Any, high: Any, shape: tuple[int, ...], dtype: Any) -> spaces.Box:
+    """Returns a ``Box`` whose bounds are the same everywhere.
+
+    A ``Box`` keeps four arrays of its shape: for pictures more than the environments themselves. Here each is one number.
+    """
+    kind = np.dtype(dtype).type
+    box = spaces.Box(kind(low), kind(high), (1,) * len(shape), kind)
+    box._shape = shape
+    for name in ("low", "high", "bounded_below", "bounded_above"):
+        setattr(box, name, np.broadcast_to(getattr(box, name), shape))
+    return box
 
 
 class Actions(spaces.Box):

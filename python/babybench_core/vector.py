@@ -6,6 +6,7 @@ import functools
 import os
 from collections.abc import Mapping, Sequence
 from enum import Enum
+from numbers import Real
 from typing import Any, Optional, Union
 
 import gymnasium
@@ -139,8 +140,8 @@ class VectorEnv(gymnasium.vector.VectorEnv):  # type: ignore[type-arg, unused-ig
         self._assets = None if assets is None else os.fspath(assets)
         self._limits = (threads, max_memory)
         self._copy = copy
-        # the arrays that threads write into, and the copies of the last observation and of the next
-        self._kept = 3 if copy else 1
+        # copies of the last observation and of the next; the arrays that threads write into are in the place of the vector's own
+        self._kept = 2 if copy else 0
         self.autoreset_mode = mode
         shared = scenes.blueprint(full[0], self._assets)  # kept until the environments share it
         _native.VectorEnv.check_memory(shared, num_envs, _MODES[mode], *self._limits, self._kept)
@@ -157,7 +158,7 @@ class VectorEnv(gymnasium.vector.VectorEnv):  # type: ignore[type-arg, unused-ig
         self.single_action_space = spaces.action_space((low, high))
         self.single_observation_space = spaces.observation_space(self._core)
         self.action_space = batch_space(self.single_action_space, num_envs)
-        self.observation_space = batch_space(self.single_observation_space, num_envs)
+        self.observation_space = spaces.batch(self.single_observation_space, num_envs)
         self.metadata = {"render_modes": ["rgb_array"], "render_fps": 200, "autoreset_mode": mode}
         self.spec = None
         self.closed = False
@@ -204,10 +205,10 @@ class VectorEnv(gymnasium.vector.VectorEnv):  # type: ignore[type-arg, unused-ig
                 expected = f"bool of shape ({self.num_envs},)"
                 raise ValueError(f"reset_mask is {mask.dtype} of shape {mask.shape}, expected {expected}")
         if isinstance(seed, Sequence) and len(seed) != self.num_envs:
-            raise ValueError(f"seed has {len(seed)} entries, but there are {self.num_envs} environments")
+            raise ValueError(f"there are {len(seed)} seeds, but {self.num_envs} environments")
         begins = np.flatnonzero(self._everyone if mask is None else mask)
-        ages = changes.of_vector("age", options["age"], self.num_envs) if "age" in options else None
-        models = changes.of_vector("model", options.get("model"), self.num_envs)
+        ages = changes.of_vector("age", options["age"], self.num_envs, Real) if "age" in options else None
+        models = changes.of_vector("model", options.get("model"), self.num_envs, Mapping)
         for env in begins.tolist():
             if ages is not None:
                 self.set_age(env, ages[env])

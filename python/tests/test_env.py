@@ -367,6 +367,7 @@ def test_eyes_are_drawn_for_those_who_ask(views):
     assert some.snapshot() == every.snapshot()
 
 
+@pytest.mark.filterwarnings("ignore:.*infinity. This is probably too")
 def test_a_restored_environment_has_no_picture_to_draw():
     env = babybench.make("test_installation", vision_lazy=True, touch_active=False)
     env.reset(seed=0)

@@ -266,6 +266,7 @@ def test_defaults_that_a_script_has_changed_hold(monkeypatch: pytest.MonkeyPatch
     assert TOUCH_PARAMS["scales"] == scales  # one environment does not change the next
 
 
+@pytest.mark.filterwarnings("ignore:make_env")
 def test_keys_that_are_left_out_have_their_default(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     for behavior in ("hand_regard", "self_touch", "none"):

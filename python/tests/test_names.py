@@ -53,7 +53,7 @@ def test_names_choose_rows(room):
 
 
 def test_every_name_of_a_geom_can_be_changed(room):
-    for name in ("palm", "caregiver 2/2", room.geom_names[5]):
+    for name in ("palm", "caregiver 1/2", "caregiver 2/2", room.geom_names[5]):
         room.change_model({"geom_friction": {name: [2, 0.1, 0.1]}})
         assert room.array("geom_friction", name).tolist() == [2, 0.1, 0.1]
     room.change_model({"body_mass": {"toy": 2.0}})

@@ -50,7 +50,8 @@ def test_pettingzoo_finds_nothing_wrong(two):
         warnings.simplefilter("ignore")  # what it says of its own environments
         from pettingzoo.test import parallel_api_test
 
-    parallel_api_test(two, num_cycles=12)
+        with pytest.warns(UserWarning, match="options of a reset without effect: 'options'"):
+            parallel_api_test(two, num_cycles=12)
 
 
 def test_the_other_moves_by_his_own_actions(two):

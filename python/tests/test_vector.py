@@ -314,7 +314,7 @@ def test_observations_for_learners_outlive_the_next_step(monkeypatch):
         class Base:
             def __init__(self, num_envs, observation_space, action_space):
                 self.num_envs, self.action_space = num_envs, action_space
-                self._seeds = [None] * num_envs
+                self._seeds, self._options = [None] * num_envs, [{}] * num_envs
                 self._reset_seeds = self._reset_options = lambda: None
 
         for name in ("stable_baselines3", "stable_baselines3.common", "stable_baselines3.common.vec_env"):

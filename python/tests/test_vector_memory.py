@@ -25,8 +25,9 @@ gc.collect()
 before = int(open("/proc/self/statm").read().split()[1]) * resource.getpagesize()
 envs = babybench.VectorEnv(num_envs=count, **keys)
 observations = envs.reset(seed=0)
-for _ in range(2):
+for _ in range(3):
     observations = envs.step(envs.action_space.sample())
+    pictures = envs.eyes() if keys.get("vision_lazy") else None
 peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024
 print(json.dumps([float(number) * 1024 ** ["KiB", "MiB", "GiB"].index(unit) * 1024, peak - before]))
 """
@@ -46,7 +47,7 @@ EYES: dict[str, Any] = {"config": "hand_regard", "threads": 2}
         (8, {**EYES, "vision_resolution": 1024, "vision_outputs": ALL}),
         (8, {**EYES, "vision_resolution": 1024, "vision_outputs": ["depth"]}),
         (8, {**EYES, "vision_resolution": 1024, "vision_outputs": ["gray"]}),
-        (8, {**EYES, "vision_resolution": 1024, "autoreset_mode": "SameStep"}),
+        (8, {**EYES, "vision_resolution": 1024, "autoreset_mode": "SameStep", "max_episode_steps": 1}),
         (8, {**EYES, "vision_resolution": 1024, "vision_lazy": True}),
         (600, {"config": "self_touch", "threads": 2}),
         (300, {"config": "self_touch", "threads": 2, "touch_scale": 0.5}),
