@@ -113,7 +113,7 @@ def test_messages_name_what_to_use():
         (lambda: babybench.VectorEnv(SMALL, 2, threads=-1), ValueError, "threads is -1, expected at least 0"),
         (lambda: babybench.VectorEnv(SMALL, 2.0), TypeError, "num_envs is 2.0, expected a whole number"),
         (lambda: babybench.VectorEnv(SMALL, 2, autoreset_mode="same_step"), ValueError, "did you mean `SameStep`"),
-        (lambda: babybench.VectorEnv(SMALL, 2).reset(seed=[1]), ValueError, "seed has 1 entries"),
+        (lambda: babybench.VectorEnv(SMALL, 2).reset(seed=[1]), ValueError, "there are 1 seeds"),
         (lambda: babybench.ActionNoise("pink", env, seed=-1), ValueError, "seed is -1"),
         (lambda: babybench.make(5), TypeError, "a mapping, the name of an example"),
         (lambda: babybench.make([{}]), TypeError, "a mapping, the name of an example"),

@@ -114,6 +114,7 @@ def test_a_vector_is_its_environments():
     envs.close()
 
 
+@pytest.mark.filterwarnings("ignore:.*infinity. This is probably too")
 def test_gymnasium_finds_nothing_wrong():
     check_env(babybench.make("reach"), skip_render_check=True)
 
