@@ -185,11 +185,11 @@ table! {
         "nuser_actuator" nuser_actuator: Option<usize> = None, Kind::UserCount, "Length of `user` of actuators; -1 for the longest given.";
         "nuser_sensor" nuser_sensor: Option<usize> = None, Kind::UserCount, "Length of `user` of sensors; -1 for the longest given.";
         "nuserdata" nuserdata: usize = 0, int(0, MAX_USERDATA), "Length of `userdata` of a simulation, which only programs use.";
+        "nconmax" nconmax: Option<i64> = None, int(-1, i64::MAX), "Memory of MuJoCo; 0 for no contacts, else ignored.";
         "njmax" njmax: Option<i64> = None, int(-1, i64::MAX), "Memory of MuJoCo. Ignored.";
         "nstack" nstack: Option<i64> = None, int(-1, i64::MAX), "Memory of MuJoCo. Ignored.";
         "memory" memory: Option<String> = None, Kind::Memory, "Memory of MuJoCo. Ignored.";
         "nkey" nkey: usize = 0, int(0, MAX_KEYS), "Least number of keyframes; those that are not given hold the reference configuration.";
-        check "nconmax", int(-1, i64::MAX), "Memory of MuJoCo. Ignored.";
     }
 }
 

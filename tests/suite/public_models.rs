@@ -91,6 +91,21 @@ fn pictures_are_as_wide_as_the_sensor_sees() {
     assert!(matches!(sides(4), Err(RenderError::Orthographic { camera: 4 })));
 }
 
+/// Of rows with nearly no regularisation a force is the product of a huge number and a tiny one: it is that which balances the rest.
+#[test]
+fn a_ball_at_rest_without_friction_presses_steadily() {
+    let mut engine = engine(
+        r#"<mujoco><worldbody><geom type="plane" size="2 2 .1" friction="0 0 0"/><body pos="0 0 .1"><freejoint/>
+           <geom size=".1" mass=".1" friction="0 0 0"/><site name="s" size=".2"/></body></worldbody><sensor><touch site="s"/></sensor></mujoco>"#,
+    );
+    let mut state = engine.new_state();
+    for step in 0..1000 {
+        engine.step(&mut state).expect("finite");
+        let touch = state.sensordata[0];
+        assert!(step < 980 || (touch - 0.981).abs() < 1e-4, "step {step}: {touch}");
+    }
+}
+
 #[test]
 fn skins_are_looked_through_and_not_drawn() {
     let data = r#"vertex="0 0 0 1 0 0 0 1 0" face="0 1 2""#;

@@ -118,7 +118,8 @@ pub fn figures(sides: &mut Sides) -> Figures {
         cpu: f64::NAN,
         failure: None,
     };
-    if model.nv == 0 {
+    // models of other elements have other states
+    if model.nv == 0 || out.arrays.is_infinite() {
         return out;
     }
     let (mut errors, mut start) = (Vec::new(), None);

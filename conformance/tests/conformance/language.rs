@@ -147,6 +147,11 @@ const DOCUMENTS: &[(&str, &str)] = &[
          <sensor><rangefinder site='x'/><rangefinder site='y'/><rangefinder site='z'/></sensor>",
     ),
     (
+        "the extent of a world without geoms along x",
+        "<worldbody><site/><site pos='3 .8 0'/></worldbody>",
+    ),
+    ("the extent of nothing", "<worldbody/>"),
+    (
         "the extent of a world without geoms",
         "<worldbody><site/><site pos='0 .8 0'/><body pos='0 0 3'><inertial pos='0 0 0' mass='1' diaginertia='1 1 1'/></body></worldbody>",
     ),
@@ -175,6 +180,10 @@ const DOCUMENTS: &[(&str, &str)] = &[
     (
         "a box in turned frames on the floor",
         "<worldbody><geom type='plane' size='50 50 1'/><replicate count='9' euler='0 0 37' offset='.3 .1 0'><frame pos='1 2 0' euler='0 0 12'><body pos='0 -15 2'><freejoint/><geom type='box' size='1 .5 2'/></body></frame></replicate></worldbody>",
+    ),
+    (
+        "no room for contacts",
+        "<size nconmax='0'/><worldbody><geom type='plane' size='2 2 .1'/><body pos='0 0 .09'><freejoint/><geom size='.1'/></body></worldbody>",
     ),
     (
         "spheres that touch",

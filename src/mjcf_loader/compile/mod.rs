@@ -46,6 +46,8 @@ pub(super) fn compile(
     let (vis, stat) = (document.visual.clone(), document.statistic.clone());
     let mut arrays = Arrays::without_elements(name, opt, vis, stat);
     arrays.nuserdata = document.size.nuserdata;
+    // MuJoCo looks for no contacts where there is no room for one
+    arrays.opt.flags.contact &= document.size.nconmax != Some(0);
     let mut context = Context {
         tree,
         compilers: &document.compilers,

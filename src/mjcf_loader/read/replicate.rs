@@ -288,14 +288,28 @@ fn forget_lost(before: &Known, document: &mut Document) {
     let mut now = Known::of(document);
     keep(&mut document.pairs, before, &now);
     keep(&mut document.excludes, before, &now);
-    for mut tendon in keep(&mut document.tendons, before, &now) {
-        now.remove(ElementKind::Tendon, tendon.name());
-    }
+    let tendons: Vec<String> = document.tendons.iter().map(|tendon| tendon.name.clone()).collect();
+    let lost = keep(&mut document.tendons, before, &now);
+    forget_names(ElementKind::Tendon, &tendons, lost, &mut now);
     keep(&mut document.equalities, before, &now);
-    for mut actuator in keep(&mut document.actuators, before, &now) {
-        now.remove(ElementKind::Actuator, actuator.name());
-    }
+    let actuators: Vec<String> = document
+        .actuators
+        .iter()
+        .map(|actuator| actuator.name.clone())
+        .collect();
+    let lost = keep(&mut document.actuators, before, &now);
+    forget_names(ElementKind::Actuator, &actuators, lost, &mut now);
     keep(&mut document.sensors, before, &now);
+}
+
+/// Forgets the names of elements that were taken away, and those that MuJoCo 3.3.0 does not find any more: it looks for the rest where they
+/// stood before, and the last ones have moved up. What refers to those goes, too.
+fn forget_names<T: Referring>(thing: ElementKind, before: &[String], mut lost: Vec<T>, now: &mut Known) {
+    let left = before.len() - lost.len();
+    let moved = before[left..].iter().map(String::as_str);
+    let gone = lost.iter_mut().map(|element| element.name().clone());
+    let gone: Vec<String> = gone.chain(moved.map(str::to_owned)).collect();
+    gone.iter().for_each(|name| now.remove(thing, name));
 }
 
 /// Returns the elements of a list that it does not keep.

@@ -301,7 +301,12 @@ fn statistics(model: &Arrays, s: &State, dof_m0: &[f64]) -> Statistic {
         _ => sizes(model, s)[1..].iter().map(|v| v.max(1e-5)).sum::<f64>() / others,
     };
     let (low, high) = bounds(model, s);
-    let extent = (0..3).map(|k| high[k] - low[k]).fold(1e-5, f64::max);
+    // MuJoCo's own extent stays where nothing is beside anything else along x
+    let extent = if high[0] > low[0] {
+        (0..3).map(|k| high[k] - low[k]).fold(1e-5, f64::max)
+    } else {
+        2.0
+    };
 
     let mut stat = model.stat.clone();
     let set = |field: &mut f64, value: f64| {
@@ -316,12 +321,7 @@ fn statistics(model: &Arrays, s: &State, dof_m0: &[f64]) -> Statistic {
         stat.center = std::array::from_fn(|k| 0.5 * (low[k] + high[k]));
     }
     if stat.extent == 0.0 {
-        // that of a world without geoms is MuJoCo's of nothing
-        stat.extent = if model.ngeom() == 0 {
-            2.0
-        } else {
-            extent.max(2.0 * meansize)
-        };
+        stat.extent = extent.max(2.0 * meansize);
     }
     stat
 }
