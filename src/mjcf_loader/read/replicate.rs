@@ -306,10 +306,9 @@ fn forget_lost(before: &Known, document: &mut Document) {
 /// stood before, and the last ones have moved up. What refers to those goes, too.
 fn forget_names<T: Referring>(thing: ElementKind, before: &[String], mut lost: Vec<T>, now: &mut Known) {
     let left = before.len() - lost.len();
-    let moved = before[left..].iter().map(String::as_str);
-    let gone = lost.iter_mut().map(|element| element.name().clone());
-    let gone: Vec<String> = gone.chain(moved.map(str::to_owned)).collect();
-    gone.iter().for_each(|name| now.remove(thing, name));
+    let taken = lost.iter_mut().map(|element| element.name().clone());
+    let gone = taken.chain(before[left..].iter().cloned());
+    gone.for_each(|name| now.remove(thing, &name));
 }
 
 /// Returns the elements of a list that it does not keep.
