@@ -109,13 +109,17 @@ mod tests {
     }
 
     /// Runs two episodes of a few environments on one thread.
-    fn run(blueprint: &Blueprint) -> Result<(), VectorError> {
-        let mut envs = VectorEnv::new(blueprint, 3, VectorOptions::default())?;
+    fn run(blueprint: &Blueprint) -> Result<(), String> {
+        let text = |error: VectorError| error.to_string();
+        let mut envs = VectorEnv::new(blueprint, 3, VectorOptions::default()).map_err(text)?;
         let mut actions = Vec::new();
-        envs.reset(3)?;
+        envs.reset(3).map_err(text)?;
         for _ in 0..9 {
-            envs.sample_actions(&mut actions)?;
-            envs.step(&actions)?;
+            envs.sample_actions(&mut actions).map_err(text)?;
+            let batch = envs.step(&actions).map_err(text)?;
+            if let Some(failure) = batch.failures.first() {
+                return Err(failure.error.to_string());
+            }
         }
         Ok(())
     }
@@ -123,7 +127,7 @@ mod tests {
     fn error_of(task: impl Task + 'static) -> String {
         let options = BlueprintOptions::default().with_task(task);
         let blueprint = Blueprint::with(quick(Config::default()), options).expect("embedded assets");
-        run(&blueprint).expect_err("the task does more").to_string()
+        run(&blueprint).expect_err("the task does more")
     }
 
     #[test]

@@ -281,7 +281,7 @@ mod tests {
             ("configs: [a]\npolicies: [x]\nseeds: 0", 3, "from 1 to 1000"),
             ("configs: [a]\npolicies: [x]\nseeds: [1, 2]", 3, "one value"),
             ("configs: [a]\npolicies: [[x]]", 2, "lists in lists"),
-            ("configs: {a: b}", 1, "mapping in a mapping"),
+            ("configs: {a: b}", 1, "mappings in mappings"),
             ("configs: [a]\nconfigs: [b]", 2, "twice"),
             ("configs: [a]\npolicies: [x]\nages: [25]", 3, "not an age"),
             ("configs: [a", 1, "not valid YAML"),
