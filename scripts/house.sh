@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Prints the counts that tell how well the house is kept, of the files that git tracks as they stand: methods of Env, files that know one
-# sense, crates, the public listing, lines and comments by room, and what is long. The same tree prints the same text.
+# sense, the project's crates and those it depends on, features, hidden items, type names that are used twice, lines and comments by room,
+# and what is long. The same tree prints the same text.
 #   scripts/house.sh
 # Needs cargo (for `cargo tree`; nothing is compiled), once the network for the index of crates.
 set -euo pipefail
@@ -9,8 +10,14 @@ export LC_ALL=C
 
 title() { echo; echo "## $1"; }
 rust_files() { git ls-files -- "$@" | grep '\.rs$' | grep -v '/generated/'; }
-number_of() { # PATTERN [WITHOUT]: of what a public item in the listing matches, each item once
-  grep -oE "$1" docs/public-api.txt | grep -vE "${2:-^$}" | sort -u | wc -l
+methods_of() { # TYPE: its public methods in src, each name once
+  git ls-files 'src/*.rs' | xargs awk -v of="$1" '
+    $0 ~ "^impl(<[^>]*>)? (.* for )?" of "(<[^>]*>)? \\{" && $0 !~ / for / { within = 1; next }
+    /^}/ { within = 0 }
+    within && /^    pub (const )?fn / { name = $0; sub(/.*fn /, "", name); sub(/[^a-z0-9_].*/, "", name); print FILENAME ":" name }' | sort -u
+}
+required_of() { # TRAIT FILE: methods of a trait
+  awk -v of="$1" '$0 ~ "^pub trait " of "[: ]" { within = 1; next } /^}/ { within = 0 } within && /^    fn / { n++ } END { print n + 0 }' "$2"
 }
 crates() { # FEATURES: of a normal build, the library itself among them
   cargo tree --locked --package babybench --edges normal --prefix none --no-dedupe "$@" | sed 's/ (.*//' | sort -u | wc -l
@@ -88,8 +95,10 @@ others=$(read_rust "${of_others[@]}")
 
 echo '# The house in numbers'
 title 'What a reader has to hold in the head'
-echo "public methods of Env: $(number_of 'pub (const )?fn babybench::env::Env::[a-z_0-9]+' '::(clone|fmt)$')"
-echo "methods of the trait Task: $(number_of 'pub fn babybench::env::Task::[a-z_0-9]+\(')"
+methods=$(methods_of Env)
+echo "public methods of Env: $(sed 's/.*://' <<<"$methods" | sort -u | wc -l), in $(cut -d: -f1 <<<"$methods" | sort -u | wc -l) files"
+echo "public methods of TaskScene: $(methods_of TaskScene | wc -l)"
+echo "methods of the trait Task: $(required_of Task src/env/task/mod.rs)"
 echo "files that name the sense touch_pooled: $(git grep -l touch_pooled -- src python/src python/babybench_core web | wc -l)"
 git grep -l touch_pooled -- src python/src python/babybench_core web | sed 's/^/  /'
 
@@ -98,8 +107,26 @@ echo "without features: $(crates --no-default-features)"
 echo "with the default features: $(crates)"
 echo "with all features: $(crates --all-features)"
 
-title 'Public interface (docs/public-api.txt)'
-echo "lines: $(wc -l <docs/public-api.txt); each once: $(sort -u docs/public-api.txt | wc -l)"
+title 'Features and hidden items'
+echo "features of babybench: $(awk '/^\[/ { within = $0 == "[features]" } within && / = / && $1 != "default" { print $1 }' Cargo.toml | sort | paste -sd' ')"
+echo "items hidden from the documentation: $(git grep -hc 'doc(hidden)' -- 'src/*.rs' 'engine/*.rs' | awk '{ n += $1 } END { print n + 0 }')"
+echo "conditions on features in src: $(git grep -hE 'cfg.*feature' -- 'src/*.rs' 'engine/*.rs' | wc -l)"
+
+title 'Crates of this project that are published, with their lines of Rust'
+for manifest in Cargo.toml cli/Cargo.toml engine/Cargo.toml src/model/Cargo.toml src/mjcf_loader/Cargo.toml src/physics/Cargo.toml \
+  src/physics/rapier/Cargo.toml src/render/Cargo.toml; do
+  folder=$(dirname "$manifest") name=$(sed -n 's/^name = "\(.*\)"$/\1/p' "$manifest" | head -n 1)
+  case $name in
+    babybench) files=$(git ls-files 'src/*.rs' | grep -vE '^src/(model|mjcf_loader|physics|render)/') ;;
+    mjcf-sim-physics) files=$(git ls-files 'src/physics/*.rs' | grep -v '^src/physics/rapier/') ;;
+    *) files=$(git ls-files "$folder/src/*.rs" "$folder/*.rs" | grep -v /tests/ | sort -u) ;;
+  esac
+  printf '%-18s %6d\n' "$name" "$(xargs cat <<<"$files" | wc -l)"
+done
+
+title 'Type names that are used more than twice in src'
+git grep -hoE '^(pub(\([a-z: ]*\))? )?(struct|enum|trait|type) [A-Z][A-Za-z0-9]*' -- 'src/*.rs' 'engine/*.rs' | awk '{ print $NF }' | sort | uniq -c |
+  awk '$1 > 2 { print $2, $1 }' | sort -k2,2nr -k1,1 | paste -sd, | sed 's/,/, /g'
 
 title 'Lines of src by room (comments: inside functions, also behind code; of 100: for every hundred lines of code)'
 by_room <<<"$src"
