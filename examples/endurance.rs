@@ -1,9 +1,9 @@
 //! Long runs, and starts that make no sense: what the simulation withstands. Prints tables of Markdown.
 //!
 //! ```sh
-//! cargo run --release --example endurance -- steps 10000000   # over scenes, bodies, actuation models and engines
-//! cargo run --release --example endurance -- starts 50000     # interpenetration, 10^6 rad/s and more
-//! cargo run --release --example endurance -- steps 10000000 'crib | v2'   # the rows that begin so
+//! cargo run --release --features rapier --example endurance -- steps 10000000   # over scenes, bodies, actuation models and engines
+//! cargo run --release --features rapier --example endurance -- starts 50000     # interpenetration, 10^6 rad/s and more
+//! cargo run --release --features rapier --example endurance -- steps 10000000 'crib | v2'   # the rows that begin so
 //! ```
 //!
 //! A step is an error of its type or leaves finite numbers; a twin that is restored from a snapshot goes on with the same bits; memory

@@ -1,7 +1,7 @@
 //! Adds MIMo to a Rapier world of your own, beside bodies that the model does not know: a ball falls on MIMo.
 //!
 //! ```sh
-//! cargo run --release --example own_world
+//! cargo run --release --features rapier --example own_world
 //! ```
 
 use std::sync::Arc;

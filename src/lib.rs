@@ -71,7 +71,7 @@
 //! | feature | adds |
 //! |---|---|
 //! | `eval` (default) | [`runs`], [`policy`], [`eval`]: logs, policies, scores, evaluation; serde for configurations and results |
-//! | `rapier` (default) | an engine that solves with [Rapier](https://rapier.rs)'s own pipeline; ray casts and shape queries |
+//! | `rapier` | an engine that solves with [Rapier](https://rapier.rs)'s own pipeline; ray casts and shape queries |
 //! | `parallel` | threads in vectors of environments, and for the second eye |
 //! | `npz` | NumPy archives, for recordings and replays |
 //! | `report` | [`report`]: a page about a run |
@@ -148,6 +148,6 @@ pub use vector::options::{AutoresetMode, VectorOptions};
 struct Readme;
 
 /// So are those in the guide.
-#[cfg(doctest)]
+#[cfg(all(doctest, feature = "rapier"))]
 #[doc = include_str!("../docs/guide/rust.md")]
 struct Guide;

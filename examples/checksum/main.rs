@@ -3,7 +3,7 @@
 //! ```sh
 //! cargo run --release --example checksum               # episodes of the examples
 //! cargo run --release --example checksum episode 2 100 # in two threads, up to 100 steps
-//! cargo run --release --example checksum variant       # tasks, actuation models, the other engine, ages; also with threads and steps
+//! cargo run --release --example checksum variant       # with --features rapier: tasks, actuation models, the other engine, ages; also with threads and steps
 //! cargo run --release --example checksum vector 2      # vectors of environments, stepped by two threads
 //! cargo run --release --example checksum picture       # pictures of rooms and eyes
 //! cargo run --release --example checksum snapshot      # snapshots, their bytes and what follows them

@@ -209,7 +209,7 @@ choices! {
         /// Joint-space dynamics with MuJoCo's soft constraints.
         #[default]
         Soft = "soft",
-        /// Rapier's own pipeline with multibody joints. Needs the cargo feature `rapier`, a default one.
+        /// Rapier's own pipeline with multibody joints. Needs the cargo feature `rapier`.
         Rapier = "rapier",
     }
 }
