@@ -140,8 +140,8 @@ class VectorEnv(gymnasium.vector.VectorEnv):  # type: ignore[type-arg, unused-ig
         self._assets = None if assets is None else os.fspath(assets)
         self._limits = (threads, max_memory)
         self._copy = copy
-        # of the last step and of this one: copies of observations, and the last observations of episodes that have ended; the arrays
-        # that threads write into are in the place of the vector's own
+        # of the last step and of this one: copies of observations, and the last observations of episodes that have ended;
+        # the arrays that threads write into are in the place of the vector's own
         self._kept = 2 * copy + 2 * (mode is AutoresetMode.SAME_STEP)
         self.autoreset_mode = mode
         shared = scenes.blueprint(full[0], self._assets)  # kept until the environments share it
