@@ -122,7 +122,7 @@ const DOCUMENTS: &[(&str, &str)] = &[
     ),
     (
         "groups beyond those of the viewer",
-        "<worldbody><body><joint group='8'/><geom size='.1' group='6'/><site group='7'/></body></worldbody>",
+        "<worldbody><body><joint group='8'/><geom size='.1' group='6'/><geom size='.05'/><site group='7'/></body></worldbody>",
     ),
     (
         "all bits of collision",
