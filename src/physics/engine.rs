@@ -13,6 +13,63 @@ use crate::topology::Topology;
 
 /// Advances a [`State`] of a [`Model`]. An engine remembers nothing that changes a later step: the state is all there
 /// is.
+///
+/// Write your own to change how a scene moves. This one leaves forces to [`SoftEngine`](crate::SoftEngine) and integrates hinges and
+/// slides by itself, within a greatest speed:
+///
+/// ```
+/// use std::sync::Arc;
+///
+/// use mjcf_sim::assets::MemoryAssets;
+/// use mjcf_sim::mjcf_loader::load_str;
+/// use mjcf_sim::Model;
+/// use mjcf_sim::physics::collision::PairTable;
+/// use mjcf_sim::physics::{Engine, EngineError, Probe, SoftEngine, SoftOptions, State, Topology, compile};
+///
+/// /// Limits the speed of every degree of freedom, rad/s or m/s.
+/// struct Governed {
+///     inner: SoftEngine,
+///     most: f64,
+/// }
+///
+/// impl Engine for Governed {
+///     fn model(&self) -> &Arc<Model> {
+///         self.inner.model()
+///     }
+///     fn topology(&self) -> &Topology {
+///         self.inner.topology()
+///     }
+///     fn pairs(&self) -> &PairTable {
+///         self.inner.pairs()
+///     }
+///     fn forward(&mut self, state: &mut State) -> Result<(), EngineError> {
+///         self.inner.forward(state)
+///     }
+///     fn step(&mut self, state: &mut State) -> Result<(), EngineError> {
+///         self.forward(state)?;
+///         let h = self.model().opt.timestep;
+///         for i in 0..state.qvel.len() {
+///             state.qvel[i] = (state.qvel[i] + h * state.qacc[i]).clamp(-self.most, self.most);
+///             state.qpos[i] += h * state.qvel[i];
+///         }
+///         state.time += h;
+///         Ok(())
+///     }
+///     fn set_probe(&mut self, probe: Option<Probe>) {
+///         self.inner.set_probe(probe);
+///     }
+/// }
+///
+/// let text = "<mujoco><worldbody><body><joint axis='0 1 0'/><geom size='.1' pos='1 0 0'/></body></worldbody></mujoco>";
+/// let model = Arc::new(compile(load_str(text, "arm.xml", &MemoryAssets::new())?)?);
+/// let mut engine = Governed { inner: SoftEngine::new(model, SoftOptions::default()), most: 0.5 };
+/// let mut state = engine.new_state();
+/// for _ in 0..500 {
+///     engine.step(&mut state)?;
+/// }
+/// assert_eq!(state.qvel[0], 0.5);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub trait Engine: Send + Sync {
     /// Returns the compiled scene.
     fn model(&self) -> &Arc<Model>;
@@ -246,7 +303,7 @@ pub enum EngineError {
         step: u64,
         /// The kind of item that exceeds the limit.
         what: &'static str,
-        /// The limit, of [`crate::Limits`].
+        /// The limit, of [`mjcf_sim_model::Limits`].
         limit: usize,
     },
     /// The simulation diverged.

@@ -45,16 +45,15 @@ impl State {
     /// the solver's tolerance, which stays that of the model.
     ///
     /// ```
+    /// use mjcf_sim::Simulation;
     /// use mjcf_sim::physics::FreeBody;
-    /// use mjcf_sim::{Config, Env, config::{Behavior, Scene}};
     ///
-    /// let scene = Scene::Cubes;
-    /// let mut env = Env::new(Config { scene, touch_active: false, vision_active: false, ..Config::default() })?;
-    /// env.reset(Some(0))?;
-    /// let model = env.model().clone();
-    /// let ball = model.body("red_sphere").ok_or("the cubes have a red ball")?;
-    /// env.state_mut().set_free_body(&model, ball, FreeBody::sphere(5.0, 0.05))?;
-    /// assert_eq!(env.state().params.body_mass[ball], 5.0);
+    /// let mut scene = Simulation::from_text(
+    ///     "<mujoco><worldbody><body name='ball'><freejoint/><geom size='.1'/></body></worldbody></mujoco>")?;
+    /// let model = scene.model().clone();
+    /// let ball = model.body("ball").ok_or("no ball")?;
+    /// scene.state.set_free_body(&model, ball, FreeBody::sphere(5.0, 0.05))?;
+    /// assert_eq!(scene.state.params.body_mass[ball], 5.0);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     ///

@@ -248,20 +248,16 @@ impl State {
     /// last step. The force acts in every step until [`State::release_forces`] or the next reset.
     ///
     /// ```
-    /// use mjcf_sim::{Config, Env};
+    /// use mjcf_sim::Simulation;
     ///
-    /// let mut env = Env::new(Config { touch_active: false, vision_active: false, ..Config::default() })?;
-    /// env.reset(Some(0))?;
-    /// let hand = env.model().body("right_hand").ok_or("MIMo has hands")?;
-    /// let action = vec![0.0; env.action_space().len()];
-    /// let before = env.state().xpos[hand];
-    /// for _ in 0..20 {
-    ///     let state = env.state_mut();
-    ///     state.release_forces();
-    ///     state.apply_force(hand, [0.0, 0.0, 5.0], [0.0; 3], state.xpos[hand])?;
-    ///     env.step(&action)?;
-    /// }
-    /// assert!(env.state().xpos[hand][2] > before[2] + 0.01);
+    /// let mut ball = Simulation::from_text("<mujoco><option gravity='0 0 0'/><worldbody>
+    ///   <body name='ball'><freejoint/><geom size='.1' mass='2'/></body></worldbody></mujoco>")?;
+    /// ball.forward()?; // where the ball is
+    /// let body = ball.model().body("ball").ok_or("no ball")?;
+    /// let centre = ball.state.xipos[body];
+    /// ball.state.apply_force(body, [0.0, 0.0, 5.0], [0.0; 3], centre)?;
+    /// ball.run(100)?; // 0.2 s at 5 N / 2 kg
+    /// assert!((ball.state.qvel[2] - 0.5).abs() < 1e-12);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     ///

@@ -6,7 +6,7 @@ use crate::params::Params;
 use crate::tendon_paths::TendonPaths;
 use crate::tiles::{Lanes, Pattern, Tile, ZERO};
 
-/// The structure of the tree of a [`crate::Model`], derived for the dynamics: ancestor chains, trees, the layout of matrices.
+/// The structure of the tree of a [`mjcf_sim_model::Model`], derived for the dynamics: ancestor chains, trees, the layout of matrices.
 ///
 /// A *tree* is a set of degrees of freedom that depend on each other, a consecutive range. Row `i` of the joint-space
 /// inertia is nonzero for `i` and its ancestors only; the chain of an ancestor is a prefix of the chain of its

@@ -1,14 +1,17 @@
-//! Rendering: a [`Scenery`] is built once from a [`Model`](crate::Model), and drawn from poses.
+//! Rendering: a [`Scenery`] is built once from a [`Model`](mjcf_sim_model::Model), and drawn from poses.
 //!
 //! ```
-//! use mjcf_sim::Config;
-//! use mjcf_sim::mimo::{build_model, embedded};
-//! use mjcf_sim::physics::{Engine, SoftEngine, SoftOptions};
+//! use mjcf_sim::assets::MemoryAssets;
+//! use mjcf_sim::mjcf_loader::load_str;
+//! use mjcf_sim::physics::{Engine, SoftEngine, SoftOptions, compile};
 //! use mjcf_sim::render::{Poses, RenderRequest, Renderer, Scenery, View};
 //!
-//! let model = build_model(&Config::default(), &embedded())?;
-//! let mut renderer = Renderer::cpu(Scenery::new(&model, &embedded())?.into());
-//! let camera = model.camera("corner").expect("the base scene has it");
+//! let text = "<mujoco><worldbody><light pos='0 0 3'/><geom size='.5' rgba='1 0 0 1'/>
+//!   <camera name='side' pos='0 -3 0' xyaxes='1 0 0 0 0 1'/></worldbody></mujoco>";
+//! let assets = MemoryAssets::new();
+//! let model = compile(load_str(text, "ball.xml", &assets)?)?;
+//! let mut renderer = Renderer::cpu(Scenery::new(&model, &assets)?.into());
+//! let camera = model.camera("side").ok_or("no such camera")?;
 //! let view = View { camera, width: 64, height: 64 };
 //!
 //! let mut engine = SoftEngine::new(model.into(), SoftOptions::default());

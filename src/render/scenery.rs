@@ -140,7 +140,7 @@ impl Scenery {
     ///
     /// # Errors
     /// Fails if an image is missing, broken or of a shape that does not fit, or if the textures together have more pixels than
-    /// [`Limits::texture_pixels`](crate::Limits::texture_pixels).
+    /// [`Limits::texture_pixels`](mjcf_sim_model::Limits::texture_pixels).
     pub fn new(model: &Model, assets: &dyn AssetSource) -> Result<Self, RenderError> {
         Self::build(model, Some(Loader::new(assets)))
     }

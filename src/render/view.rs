@@ -50,16 +50,12 @@ impl View {
 /// A camera that looks at a point from anywhere, as MuJoCo's `mjvCamera`: the one that people steer.
 ///
 /// ```
-/// use mjcf_sim::env::Viewer;
 /// use mjcf_sim::render::FreeCamera;
-/// use mjcf_sim::{Config, Env};
 ///
-/// let mut env = Env::new(Config { touch_active: false, vision_active: false, ..Config::default() })?;
-/// env.reset(Some(0))?;
-/// let camera = FreeCamera { lookat: [0.0, 0.0, 0.3], distance: 1.5, azimuth: 135.0, elevation: -20.0 };
-/// let mut viewer = Viewer::new(env.blueprint())?;
-/// assert_eq!(viewer.draw(&env, camera, 32, 24)?.len(), 3 * 32 * 24);
-/// # Ok::<(), mjcf_sim::EnvError>(())
+/// let camera = FreeCamera { lookat: [0.0, 0.0, 0.3], distance: 1.5, azimuth: 90.0, elevation: -90.0 };
+/// let (position, _orientation) = camera.pose()?;
+/// assert!((position[2] - 1.8).abs() < 1e-12); // straight above the point
+/// # Ok::<(), mjcf_sim::render::RenderError>(())
 /// ```
 #[doc(alias("mjvCamera", "mjCAMERA_FREE"))]
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,16 +1,15 @@
 //! Sources of MJCF documents and textures: directories, the file system, memory, files embedded in the program, and layers of them.
 //!
-//! A source maps normalised paths to bytes; nothing outside it can be reached. All but [`FileSystem`] take relative paths alone. The library's own files are those of
-//! [`crate::mimo::embedded`].
+//! A source maps normalised paths to bytes; nothing outside it can be reached. All but [`FileSystem`] take relative paths alone.
 //!
 //! ```
 //! use mjcf_sim::assets::{AssetSource, MemoryAssets, Overlay};
-//! use mjcf_sim::mimo::embedded;
 //!
-//! let mut changed = MemoryAssets::new();
-//! changed.insert("babybench/crib.xml", "<mujoco/>")?;
-//! let assets = Overlay::new(embedded()).with(changed);
-//! assert_eq!(assets.read("babybench/crib.xml")?.len(), 9);
+//! let (mut base, mut changed) = (MemoryAssets::new(), MemoryAssets::new());
+//! base.insert("scenes/crib.xml", "<mujoco><worldbody/></mujoco>")?;
+//! changed.insert("scenes/crib.xml", "<mujoco/>")?;
+//! let assets = Overlay::new(base).with(changed);
+//! assert_eq!(assets.read("scenes/crib.xml")?.len(), 9);
 //! # Ok::<(), mjcf_sim::assets::AssetError>(())
 //! ```
 
@@ -67,8 +66,7 @@ pub enum AssetError {
 
 /// A source of files by their paths.
 ///
-/// Paths are normalised, relative to the root of the source and separated by `/`. Threads share sources: a
-/// [`Blueprint`](crate::Blueprint) keeps the one that it is built from.
+/// Paths are normalised, relative to the root of the source and separated by `/`. Threads share sources.
 pub trait AssetSource: Send + Sync {
     /// Returns the content of a file.
     ///

@@ -68,7 +68,7 @@ impl Dual {
     /// asks for, or from none, whichever costs less. `bodies` must be up to date.
     ///
     /// # Errors
-    /// More numbers in the matrices than [`Limits::dual_numbers`].
+    /// More numbers in the matrices than [`Limits::dual_numbers`](mjcf_sim_model::Limits::dual_numbers).
     pub fn solve(
         &mut self,
         model: &Model,

@@ -60,14 +60,14 @@ pub struct SceneContact {
 /// ```
 /// use std::sync::Arc;
 ///
-/// use mjcf_sim::mimo::{build_model, embedded};
-/// use mjcf_sim::physics::Quirks;
+/// use mjcf_sim::assets::MemoryAssets;
+/// use mjcf_sim::mjcf_loader::load_str;
+/// use mjcf_sim::physics::{Engine, Quirks, SoftEngine, SoftOptions, compile};
 /// use mjcf_sim::rapier::RapierScene;
 /// use mjcf_sim::rapier::rapier3d_f64::prelude::{QueryFilter, Ray, Vector};
-/// use mjcf_sim::physics::{Engine, SoftEngine, SoftOptions};
-/// use mjcf_sim::Config;
 ///
-/// let model = Arc::new(build_model(&Config::default(), &embedded())?);
+/// let text = "<mujoco><worldbody><geom type='plane' size='5 5 1'/></worldbody></mujoco>";
+/// let model = Arc::new(compile(load_str(text, "floor.xml", &MemoryAssets::new())?)?);
 /// let mut scene = RapierScene::new(model.clone(), Quirks::default());
 ///
 /// let mut engine = SoftEngine::new(model, SoftOptions::default());

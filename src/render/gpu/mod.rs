@@ -2,18 +2,21 @@
 //! one transfer (cargo feature `wgpu`).
 //!
 //! ```no_run
+//! use mjcf_sim::assets::FileSystem;
+//! use mjcf_sim::mjcf_loader::load;
+//! use mjcf_sim::physics::{Batch, SoftOptions, compile};
 //! use mjcf_sim::render::gpu::{GpuRenderer, Rgb};
-//! use mjcf_sim::{Blueprint, Config, Env};
+//! use mjcf_sim::render::{Poses, RenderRequest, Scenery, View};
 //!
-//! let blueprint = Blueprint::new(Config { vision_active: true, ..Config::default() })?;
-//! let mut environments: Vec<Env> = (0..64).map(|_| blueprint.env()).collect::<Result<_, _>>()?;
-//! for env in &mut environments {
-//!     env.reset(None)?;
-//! }
-//! let mut gpu = GpuRenderer::new(blueprint.scenery()?)?;
-//! let requests: Vec<_> = environments.iter().filter_map(|e| Some(e.senses().vision()?.requests(e.state()))).flatten().collect();
+//! let (assets, file) = FileSystem::beside("arm.xml")?;
+//! let model = compile(load(&assets, &file)?)?;
+//! let mut gpu = GpuRenderer::new(Scenery::new(&model, &assets)?.into())?;
+//! let mut batch = Batch::new(model.into(), SoftOptions::default(), 64);
+//! batch.rollout(10, |index, _step, state| state.ctrl[0] = index as f64)?;
+//! let view = View { camera: 0, width: 64, height: 64 };
+//! let requests: Vec<_> = batch.states().iter().map(|state| RenderRequest { poses: Poses::from(state), view }).collect();
 //! let pending = gpu.begin::<Rgb>(&requests)?; // the device works; so may we
-//! let images = pending.wait()?; // 128 x 64 x 64 x 3
+//! let images = pending.wait()?; // 64 x 64 x 64 x 3
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!

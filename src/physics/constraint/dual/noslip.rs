@@ -19,7 +19,7 @@ impl Dual {
     /// `qacc, qfrc_constraint` with them; the start of the next step's solver stays. `bodies` must be up to date.
     ///
     /// # Errors
-    /// More numbers in the matrices than [`Limits::dual_numbers`](crate::Limits::dual_numbers).
+    /// More numbers in the matrices than [`Limits::dual_numbers`](mjcf_sim_model::Limits::dual_numbers).
     pub fn hold(
         &mut self,
         model: &Model,
