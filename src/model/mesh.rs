@@ -85,6 +85,11 @@ impl MeshPolygons {
         self.vert_adr.len().saturating_sub(1)
     }
 
+    /// Tells whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
     /// Returns the vertices of a polygon.
     pub fn corners(&self, polygon: usize) -> &[u32] {
         slice(&self.vert_adr, &self.vert, polygon)
