@@ -96,7 +96,7 @@ others=$(read_rust "${of_others[@]}")
 echo '# The house in numbers'
 title 'What a reader has to hold in the head'
 methods=$(methods_of Env)
-echo "public methods of Env: $(sed 's/.*://' <<<"$methods" | sort -u | wc -l), in $(cut -d: -f1 <<<"$methods" | sort -u | wc -l) files"
+echo "public methods of Env: $(cut -d: -f2 <<<"$methods" | sort -u | wc -l), in $(cut -d: -f1 <<<"$methods" | sort -u | wc -l) files"
 echo "public methods of TaskScene: $(methods_of TaskScene | wc -l)"
 echo "methods of the trait Task: $(required_of Task src/env/task/mod.rs)"
 echo "files that name the sense touch_pooled: $(git grep -l touch_pooled -- src python/src python/babybench_core web | wc -l)"

@@ -8,7 +8,7 @@ const damaged = (/** @type {string} */ how) => new Error(`The archive is ${how}.
  * @param {Uint8Array<ArrayBuffer>} bytes
  * @param {(name: string, size: number) => boolean} wanted whether a file is to be read; `size` is what it says of itself, bytes
  * @param {number} most bytes of a file, whatever it says
- * @returns {Promise<[string, Uint8Array<ArrayBuffer>][] | null>} names and contentss; nothing for what is not an archive
+ * @returns {Promise<[string, Uint8Array<ArrayBuffer>][] | null>} names and contents; null for files that are not archives
  */
 export async function unzip(bytes, wanted, most) {
   const v = new DataView(bytes.buffer, bytes.byteOffset, bytes.byteLength);
