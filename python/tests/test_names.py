@@ -89,7 +89,7 @@ def test_a_push_accelerates_as_newton_says():
 def test_pushes_that_are_none_are_refused(room):
     room.push("toy", [1, 0, 0])
     for body, force, error in (
-        ("toi", [1, 0, 0], KeyError),
+        ("nothing", [1, 0, 0], KeyError),
         (999, [1, 0, 0], KeyError),
         ("toy", [np.nan, 0, 0], ValueError),
     ):
