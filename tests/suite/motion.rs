@@ -208,9 +208,9 @@ fn hostile_tables_are_refused_with_their_line() {
         ("time,a\n0,0\n1e-300,0\n", "the rate is"),
         ("time,a\n0,0\n1e9,0\n", "motion_seconds"),
         ("time,a\n0,0\n1,0\n1.1,0\n", "resample"),
-        ("time,a,a\n0,0,0\n", "stands twice"),
+        ("time,a,a\n0,0,0\n", "appears twice"),
         ("time,root_x\n0,0\n", "the root has no column root_y"),
-        ("time,root_x,root_x\n0,0,0\n", "root_x stands twice"),
+        ("time,root_x,root_x\n0,0,0\n", "root_x appears twice"),
         (
             "time,root_x,root_y,root_z,root_qw,root_qx,root_qy,root_qz\n0,0,0,0,0,0,0,0\n",
             "unit quaternion",

@@ -225,7 +225,7 @@ fn what_is_no_record_is_refused() {
     let manifest = folder.path().join("manifest.json");
     let text = std::fs::read_to_string(&manifest).expect("a manifest");
     for (from, to, part) in [
-        ("babybench record", "something else", "no record of babybench"),
+        ("babybench record", "something else", "not a record of babybench"),
         ("\"version\": 1,", "\"version\": 9,", "of version 9"),
         (
             "episode_0.npz",

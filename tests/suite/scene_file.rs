@@ -28,26 +28,25 @@ fn original(path: &str) -> String {
 }
 
 #[test]
-fn an_include_that_brings_nothing_leaves_a_scene_that_loads() {
+fn an_include_that_brings_nothing_is_refused_as_in_mujoco() {
     let empty = "<mujocoinclude/>".to_string();
-    for section in [
-        "asset",
-        "worldbody",
-        "equality",
-        "tendon",
-        "default",
-        "visual",
-        "contact",
+    let with = "<asset><include file=\"empty.xml\"/></asset></mujocoinclude>";
+    let crib = original("babybench/crib.xml").replace("</mujocoinclude>", with);
+    for replaced in [
+        vec![("babybench/crib.xml", crib), ("babybench/empty.xml", empty.clone())],
+        vec![("babybench/crib.xml", empty)],
     ] {
-        let with = format!("<{section}><include file=\"empty.xml\"/></{section}></mujocoinclude>");
-        let crib = original("babybench/crib.xml").replace("</mujocoinclude>", &with);
-        let name = format!("scene_file_{section}");
-        survives(
-            &name,
-            &[("babybench/crib.xml", crib), ("babybench/empty.xml", empty.clone())],
+        let mut memory = MemoryAssets::new();
+        for (path, text) in replaced {
+            memory.insert(path, text.as_bytes()).expect("a path");
+        }
+        let config = free(Behavior::SelfTouch, Scene::Crib);
+        let error = build_model(&config, &Overlay::new(embedded()).with(memory)).expect_err("nothing is included");
+        assert!(
+            error.to_string().contains("the included file has no elements"),
+            "{error}"
         );
     }
-    survives("scene_file_empty", &[("babybench/crib.xml", empty)]);
 }
 
 #[test]

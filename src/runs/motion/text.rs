@@ -86,7 +86,7 @@ impl Columns {
                 return Err(format!("more than {COLUMNS} columns"));
             }
             place.push(match ROOT.iter().position(|name| *name == cell) {
-                Some(part) if std::mem::replace(&mut seen[part], true) => return Err(format!("{cell} stands twice")),
+                Some(part) if std::mem::replace(&mut seen[part], true) => return Err(format!("{cell} appears twice")),
                 Some(part) => Err(part),
                 None => {
                     names.push(cell.to_string());
