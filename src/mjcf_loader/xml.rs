@@ -399,8 +399,8 @@ impl Reading<'_> {
         {
             Some((name, _)) => Err(self.tree.error(root, ErrorKind::UnknownAttribute(name.clone()))),
             None if self.tree.nodes[root].children.is_empty() => {
-                let what = "the included file has no elements: remove the include";
-                Err(self.tree.error(at, ErrorKind::Invalid(what)))
+                let what = "the file has no elements: give it some, or remove what includes it";
+                Err(self.tree.error(root, ErrorKind::Invalid(what)))
             }
             None => Ok(root),
         }

@@ -130,7 +130,15 @@ fn image_size(
     if bytes.is_empty() {
         return Ok(None);
     }
-    let size = check_png(&bytes, &context.tree.limits).map_err(|message| format!("{message}; {ONLY_PNG}"))?;
+    let size = check_png(&bytes, &context.tree.limits).map_err(|message| {
+        // a broken picture is no reason to convert it
+        let broken = bytes.starts_with(b"\x89PNG");
+        if broken {
+            message
+        } else {
+            format!("{message}; {ONLY_PNG}")
+        }
+    })?;
     Ok(Some(size))
 }
 

@@ -29,7 +29,7 @@ impl New {
         let paths = FILES.map(|(name, _)| self.dir.join(name));
         // before the first file is written
         if let Some(path) = paths.iter().find(|path| path.symlink_metadata().is_ok()) {
-            return Err(format!("{}: this file exists; choose another folder", path.display()).into());
+            return Err(format!("{}: this file already exists; choose another folder", path.display()).into());
         }
         let failed = |path: &PathBuf, e: std::io::Error| format!("{}: {e}", path.display());
         create_dir_all(&self.dir).map_err(|e| failed(&self.dir, e))?;
