@@ -7,7 +7,7 @@ use super::attribute::{Attr, FLAG, Kind, TEXT, Words, int, real, reals, some, wo
 use super::compile::{frame_to_quat, normalize};
 use super::document::{Geom, Joint, Site};
 use super::table::{Table, table};
-use super::words::{MAX_GROUP, SOLIMP, SOLREF};
+use super::words::{MAX_SKIN_GROUP, SOLIMP, SOLREF};
 use crate::math::{Quat, Vec3, add, cross, dot, quat_mul, quat_rotate};
 
 /// Kinds of composites, of which MuJoCo 3.3.0 makes only one.
@@ -58,7 +58,7 @@ table! {
         "texcoord" texcoord: bool = false, FLAG, "Whether it has texture coordinates.";
         "material" material: Option<String> = None, TEXT, "Material.";
         "rgba" rgba: [f64; 4] = [1.0; 4], reals(4, Any), "Colour and opacity.";
-        "group" group: usize = 0, int(0, MAX_GROUP), "Visual group; 0 to 2 are drawn.";
+        "group" group: usize = 0, int(0, MAX_SKIN_GROUP), "Visual group; 0 to 2 are drawn.";
         "subgrid" subgrid: i32 = 0, int(i32::MIN as i64, i32::MAX as i64), "Vertices between one end of a box and the other, on cubics through the ends; with any, there are as many on both sides of the middle line. Below 0 counts as 0.";
         check "inflate", real(Any), "Ignored, as in MuJoCo: the skin of a cable is blown up by the thickness of its boxes.";
     }

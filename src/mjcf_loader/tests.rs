@@ -303,7 +303,10 @@ fn the_listing_explains_every_attribute() {
     assert_eq!(of("inertial", "pos"), ("3 numbers", "", true, false));
     assert_eq!(of("site", "type").0, "sphere, capsule, ellipsoid, cylinder, box");
     assert_eq!(of("joint", "limited"), ("false, true, auto", "auto", false, true));
-    assert_eq!(of("freejoint", "group"), ("whole number, 0 to 5", "0", false, false));
+    assert_eq!(
+        of("freejoint", "group"),
+        ("whole number, 0 to 2147483647", "0", false, false)
+    );
     assert_eq!(find("compiler", "angle"), ("radian, degree", "degree", false, false));
     assert_eq!(find("size", "nuser_cam"), ("whole number from -1", "", false, false));
 }

@@ -13,6 +13,8 @@ pub(super) const GREY: [f64; 4] = [0.5, 0.5, 0.5, 1.0];
 
 /// Groups from 5 on are drawn, and seen by rays, alike.
 pub(super) const MAX_GROUP: i64 = i32::MAX as i64;
+/// Greatest group of a skin.
+pub(super) const MAX_SKIN_GROUP: i64 = 5;
 /// Bits of collision, the highest of which is the sign.
 pub(super) const MIN_BITS: i64 = i32::MIN as i64;
 pub(super) const MAX_BITS: i64 = i32::MAX as i64;
