@@ -92,7 +92,7 @@ def test_an_episode_is_a_data_set_of_xarray(folder):
 def test_what_is_no_record_is_refused(folder, tmp_path):
     with pytest.raises(FileNotFoundError):
         babybench.data.open(tmp_path / "nowhere")
-    with pytest.raises(FileExistsError, match="name another folder"):
+    with pytest.raises(FileExistsError, match="choose another folder"):
         babybench.data.Recorder(babybench.make(SMALL), folder)
     manifest = json.loads((folder / "manifest.json").read_text("utf-8"))
     (folder / "manifest.json").write_text(json.dumps({**manifest, "format": "else"}), "utf-8")

@@ -217,7 +217,8 @@ def mj_resetData(m: MjModel, d: MjData) -> None:
     check(m, d)
     _anew(d)
     d._own.reset()
-    d.userdata[:] = 0
+    if getattr(m, "nuserdata", 0):
+        d.userdata[:] = 0
 
 
 def mj_resetDataKeyframe(m: MjModel, d: MjData, key: int) -> None:

@@ -31,7 +31,7 @@ _SINGLES = frozenset(
 """Arrays that MuJoCo stores in single precision."""
 
 _USERS = ("body", "jnt", "geom", "site", "cam", "tendon", "actuator", "sensor")
-_OWN = frozenset({"exclude", "pair_geom", "dof_m0", "texture", "material", "text_data"})
+_OWN = frozenset({"actuator_refid", "exclude", "pair_geom", "dof_m0", "texture", "material", "text_data"})
 """Arrays that the engine keeps in a form that MuJoCo does not have."""
 _ADDRESSES = {"body_jntadr": "body_jntnum", "body_dofadr": "body_dofnum", "body_geomadr": "body_geomnum"}
 _SIZES = (
@@ -398,6 +398,7 @@ def matrix_places(m: MjModel) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
 
 
 _DERIVED: dict[str, Callable[[MjModel], Any]] = {
+    "cam_orthographic": lambda m: m._compiled("cam_orthographic").astype(np.int32),
     "dof_M0": lambda m: m._compiled("dof_m0"),
     "dof_Madr": _matrix_addresses,
     "dof_treeid": lambda m: m.body_treeid[m.dof_bodyid],
