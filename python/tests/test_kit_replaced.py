@@ -321,7 +321,7 @@ def test_python_feels_what_the_engine_feels(function: str, response: str) -> Non
     params = {**DEFAULT_TOUCH_PARAMS, "touch_function": function, "response_function": response}
     plain, own = room(touch_params=params), room(touch_params=params)
     own.touch.touch_function = own.touch.touch_function  # a script's own from now on
-    assert own.touch.plain is False
+    assert own.touch._plain is False
     for a, b in zip(run(plain, 20), run(own, 20)):
         np.testing.assert_allclose(a["touch"], b["touch"], rtol=1e-5, atol=1e-6)
 

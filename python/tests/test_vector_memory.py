@@ -8,6 +8,7 @@ import sys
 import time
 from typing import Any
 
+import gymnasium
 import pytest
 from conftest import SMALL
 
@@ -61,7 +62,11 @@ def test_what_a_vector_says_is_what_it_takes(count: int, keys: dict[str, Any]) -
     said, took = json.loads(done.stdout)
     print(f"{count} {keys}: said {said / 1e6:.0f} MB, took {took / 1e6:.0f} MB")
     # what Python and the allocator keep beside it
-    assert abs(took - said) < 0.2 * said + 8e6
+    slack = 0.2 * said + 8e6
+    assert took - said < slack
+    # the spaces of Gymnasium before 1.0 keep fewer copies of pictures than are foreseen
+    if int(gymnasium.__version__.split(".")[0]) >= 1:
+        assert said - took < slack
 
 
 def test_far_too_many_are_refused_at_once() -> None:

@@ -171,7 +171,7 @@ class SpringDamperModel(EngineActuation):
 
     def cost(self) -> float:
         """Returns the cost of the present controls, 0 to 1."""
-        if "max_torque" not in self.changed:
+        if "max_torque" not in self._replaced:
             return super().cost()
         return float(abs(self.control_input**2 * self.max_torque).sum() / (self.n_actuators * self.max_torque.sum()))
 

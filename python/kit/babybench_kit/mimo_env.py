@@ -163,7 +163,7 @@ class MIMoEnv(SensingEnv):
     def _share_of_the_script(self) -> Share:
         """Returns what of this environment a script has replaced."""
         model = self.actuation_model
-        self._core.plain_actuation = type(model) in MODELS.values() and not model.changed
+        self._core.plain_actuation = type(model) in MODELS.values() and not model._replaced
         if not self._observes_plainly():
             return Share.SENSES
         return Share.STEP if replaced(self, _ORIGINAL, _WITHIN_STEP) else Share.NOTHING

@@ -49,7 +49,7 @@ class Replaceable:
         self.__dict__["_changed"] = set()
 
     @property
-    def changed(self) -> frozenset[str]:
+    def _replaced(self) -> frozenset[str]:
         """Returns the attributes and methods that a script has assigned on this instance."""
         return frozenset(self.__dict__.get("_changed", ()))
 

@@ -112,9 +112,9 @@ class SimpleProprioception(Proprioception):
     def get_proprioception_obs(self) -> Array:
         """Senses, and returns the parts of the output in alphabetical order, (n,)."""
         self._core.observe()
-        if self._all and self._core.plain_actuation and not self.changed:
+        if self._all and self._core.plain_actuation and not self._replaced:
             return self._core.proprioception()
-        if self.changed:
+        if self._replaced:
             self.sensor_outputs = self._sensed()
         outputs = self.sensor_outputs
         if not self._core.plain_actuation and "actuation" in outputs:
@@ -184,7 +184,7 @@ class SimpleVestibular(Vestibular):
     def sensor_outputs(self) -> Array:
         """Returns the last output, (n,)."""
         if self._shown != self._core.observed:
-            where = np.ravel(self.sensor_addrs) if self.changed else self._where
+            where = np.ravel(self.sensor_addrs) if self._replaced else self._where
             self.sensor_outputs = self._core.engine.state_array("sensordata")[where]
         return self._outputs
 
@@ -231,7 +231,7 @@ class SimpleVision(Vision):
     def sensor_outputs(self) -> dict[str, NDArray[np.uint8]]:
         """Returns what the eyes saw last, (height, width, 3) each, red, green and blue."""
         if self._shown != self._core.observed:
-            engine, seen = self._core.engine, {} if self.changed else self._core.observation()
+            engine, seen = self._core.engine, {} if self._replaced else self._core.observation()
             self.sensor_outputs = {
                 camera: seen[camera] if camera in seen else engine.render(camera, size["width"], size["height"])
                 for camera, size in self.camera_parameters.items()

@@ -103,8 +103,8 @@ class SensingEnv(gym.Env):  # type: ignore[type-arg,unused-ignore]
         return (
             not replaced(self, _ORIGINAL, _HOOKS)
             and all(type(sense) in known for sense in senses)
-            and not any(sense.changed for sense in senses if isinstance(sense, Replaceable))
-            and (self.touch is None or self.touch.plain)
+            and not any(sense._replaced for sense in senses if isinstance(sense, Replaceable))
+            and (self.touch is None or self.touch._plain)
             and components == set(SimpleProprioception.VALID_COMPONENTS)
             and self._core.plain_actuation
             and not self.goals_in_observation

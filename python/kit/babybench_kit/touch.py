@@ -114,7 +114,7 @@ class Touch(Replaceable):
         self.sensor_positions: dict[int, Array] = {}
 
     @property
-    def plain(self) -> bool:
+    def _plain(self) -> bool:
         """Whether the engine computes the output."""
         return False
 
@@ -214,7 +214,7 @@ class TrimeshTouch(Touch):
         )
 
     @property
-    def plain(self) -> bool:
+    def _plain(self) -> bool:
         """Whether the engine computes the output."""
         return self._share is Share.NOTHING
 

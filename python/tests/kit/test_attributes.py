@@ -64,7 +64,13 @@ APART = {
     "contacts.single",
 }
 # the names of the types of what stands for MuJoCo's
-STANDING_IN = {"DataView": "MjData", "ModelView": "MjModel", "Options": "MjOption", "ContactList": "_MjContactList"}
+STANDING_IN = {
+    "DataView": "MjData",
+    "ModelView": "MjModel",
+    "Options": "MjOption",
+    "ContactList": "_MjContactList",
+    "Spacings": "dict",
+}
 # what the solver computes: relative to the largest number
 SOLVED = {
     # where a hundred steps end; of hand regard's objects 8e-9 away
