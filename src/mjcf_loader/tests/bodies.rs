@@ -10,7 +10,7 @@ fn values_are_checked() {
     check_world("<geom pos='0 0 -inf'/>", "geom: pos: \"-inf\" is not a finite number");
     check_world("<geom size='-1'/>", "geom: size: -1 must be at least 0");
     check_world("<geom size='0'/>", "geom: size: 0 must be positive");
-    check_world("<geom size=''/>", "geom: size: 0 values, expected 1 to 3");
+    check_world("<geom size=''/>", "geom: size: 0 must be positive");
     check_world("<geom size='1 1 1 1'/>", "geom: size: 4 values, expected 1 to 3");
     check_world("<geom size='1' pos='1 2'/>", "geom: pos: 2 values, expected 3 to 3");
     check_world("<geom size='1' rgba='1 1 1 2'/>", "");
