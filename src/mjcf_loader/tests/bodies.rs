@@ -18,9 +18,10 @@ fn values_are_checked() {
         "<asset><material name='m' shininess='2'/></asset>",
         "mujoco/asset/material: shininess: 2 must be between 0 and 1",
     );
+    check_world("<geom size='1' contype='-1'/>", "");
     check_world(
-        "<geom size='1' contype='-1'/>",
-        "geom: contype: -1 must be from 0 to 4294967295",
+        "<geom size='1' contype='2147483648'/>",
+        "geom: contype: 2147483648 must be from -2147483648 to 2147483647",
     );
     check_world(
         "<geom size='1' contype='1.5'/>",
