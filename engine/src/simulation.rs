@@ -166,7 +166,7 @@ impl Simulation {
     /// Starts anew at a keyframe.
     ///
     /// # Errors
-    /// There is no keyframe of this name.
+    /// The model has no keyframe with this name.
     #[doc(alias = "mj_resetDataKeyframe")]
     pub fn reset_to(&mut self, keyframe: &str) -> Result<(), SimulationError> {
         let key = self.model().key(keyframe);
@@ -178,7 +178,7 @@ impl Simulation {
     /// Returns what a sensor read at the start of the last step, or at the last [`forward`](Self::forward).
     ///
     /// # Errors
-    /// There is no sensor of this name.
+    /// The model has no sensor with this name.
     pub fn sensor(&self, name: &str) -> Result<&[f64], SimulationError> {
         let model = self.engine.model();
         let sensor = model
@@ -191,7 +191,7 @@ impl Simulation {
     /// Sets the control of an actuator for the steps to come.
     ///
     /// # Errors
-    /// There is no actuator of this name.
+    /// The model has no actuator with this name.
     pub fn set_control(&mut self, actuator: &str, value: f64) -> Result<(), SimulationError> {
         let model = self.engine.model();
         let id = model.actuator(actuator);
@@ -206,7 +206,8 @@ impl Simulation {
     /// Poses are those of the last step or [`forward`](Self::forward). The first picture decodes the textures.
     ///
     /// # Errors
-    /// There is no camera of this name; a texture is broken; a side has 0 or more than [`MAX_SIZE`](crate::render::MAX_SIZE) pixels.
+    /// The model has no camera with this name, a texture is broken, or a side has 0 or more than
+    /// [`MAX_SIZE`](crate::render::MAX_SIZE) pixels.
     #[doc(alias("mjr_render", "mjv_updateScene"))]
     pub fn draw(&mut self, camera: Option<&str>, width: usize, height: usize) -> Result<Vec<u8>, SimulationError> {
         let model = self.engine.model().clone();
