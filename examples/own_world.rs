@@ -10,7 +10,7 @@ use babybench::Config;
 use babybench::config::{Behavior, Scene};
 use babybench::mimo::{build_model, embedded};
 use babybench::rapier::rapier3d_f64::prelude::*; // the version of Rapier that the library is built with
-use babybench::rapier::{Bridge, RapierOptions, Sets};
+use babybench::rapier::{Bridge, RapierOptions, RapierSets};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let config = Config {
@@ -23,7 +23,11 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     // the world, with MIMo in it
     let mut world = PhysicsWorld::new();
     world.gravity = Vector::new(0.0, 0.0, -9.81);
-    let mut bridge = Bridge::insert(model.clone(), RapierOptions::default(), &mut Sets::from(&mut world))?;
+    let mut bridge = Bridge::insert(
+        model.clone(),
+        RapierOptions::default(),
+        &mut RapierSets::from(&mut world),
+    )?;
     let mut state = bridge.new_state();
     bridge.configure(&mut world);
 

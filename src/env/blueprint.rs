@@ -21,7 +21,7 @@ use crate::env::{Env, EnvError, Task};
 use crate::mimo::scene_assets;
 use crate::model::Model;
 use crate::physics::{Engine, Params, Shared};
-use crate::render::{RenderError, SharedMemory};
+use crate::render::{RenderError, RendererPool};
 use crate::sensors::transform::Sense;
 use crate::sensors::{Proprioception, SkinLayout, Vestibular};
 use settled::{Settled, make_skin, task_model};
@@ -155,7 +155,7 @@ impl Blueprint {
             given,
             skin,
             scenery: Arc::default(),
-            painting: SharedMemory::default(),
+            painting: RendererPool::default(),
             gpu: Arc::default(),
         };
         let blueprint = Self::settled(config, task, model, surface)?;
@@ -282,7 +282,7 @@ impl Blueprint {
             model: Arc::new(model),
             surface: Surface {
                 scenery: Arc::default(),
-                painting: SharedMemory::default(),
+                painting: RendererPool::default(),
                 gpu: Arc::default(),
                 ..self.surface.clone()
             },

@@ -5,18 +5,18 @@ use std::f64::consts::PI;
 
 use crate::model::{BiasType, DynType, GainType};
 
-use super::attached::States;
+use super::attachment::KeyframeValues;
 use super::attribute::Sign::{Any, NonNegative};
 use super::attribute::{FLAG, Kind, RANGE, TEXT, int, real, reals, some};
 use super::error::UNREAD;
 use super::schema::Element;
 use super::table::{Table, table};
-use super::words::{BIASES, DYNAMICS, GAINS, TRI, Tri};
+use super::words::{AutoBool, BIASES, DYNAMICS, GAINS, TRI};
 
 /// Parameters that an element may write, as many as MuJoCo has room for.
 const PARAMETERS: usize = 10;
 
-/// Returns parameters of which only the first is not 0.
+/// Returns parameters that are 0 but for the first.
 const fn first(value: f64) -> [f64; PARAMETERS] {
     let mut all = [0.0; PARAMETERS];
     all[0] = value;
@@ -24,7 +24,7 @@ const fn first(value: f64) -> [f64; PARAMETERS] {
 }
 
 table! {
-    /// Attributes of all actuators, and what the others decide.
+    /// Attributes of all actuators, and fields that other attributes set.
     element Actuator {
         also control: Control = Control::initial();
         also activation: Activation = Activation::initial();
@@ -33,9 +33,9 @@ table! {
         also at_site: AtSite = AtSite::initial();
         also on_body: OnBody = OnBody::initial();
         also inheritrange: f64 = 0.0;
-        also states: States = States::new();
+        also states: KeyframeValues = KeyframeValues::new();
         "name" name: String = String::new(), TEXT, own, "Name.";
-        "forcelimited" forcelimited: Tri = Tri::Auto, TRI, "Whether `forcerange` is enforced.";
+        "forcelimited" forcelimited: AutoBool = AutoBool::Auto, TRI, "Whether `forcerange` is enforced.";
         "ctrlrange" ctrlrange: [f64; 2] = [0.0; 2], RANGE, "Range of the control.";
         "forcerange" forcerange: [f64; 2] = [0.0; 2], RANGE, "Range of the force.";
         "user" user: Vec<f64> = Vec::new(), Kind::User, "Numbers for programs.";
@@ -44,7 +44,7 @@ table! {
 }
 
 table! {
-    /// Attributes of all actuators but adhesion: what they act on.
+    /// Attributes of all actuators but adhesion: their transmission.
     group Target {
         "joint" joint: Option<String> = None, TEXT, own, transmission, "Joint that it drives.";
         "jointinparent" jointinparent: Option<String> = None, TEXT, own, transmission, "Joint that it drives, in place of `joint`: the same for the joints that actuators may have here.";
@@ -82,7 +82,7 @@ table! {
 table! {
     /// The attribute of all actuators but dampers.
     group Control {
-        "ctrllimited" limited: Tri = Tri::Auto, TRI, "Whether `ctrlrange` is enforced.";
+        "ctrllimited" limited: AutoBool = AutoBool::Auto, TRI, "Whether `ctrlrange` is enforced.";
     }
 }
 
@@ -102,7 +102,7 @@ table! {
         "dynprm" dynprm: [f64; PARAMETERS] = first(1.0), some(1, PARAMETERS, Any), "Time constant of a filter, s; of a muscle `timeconst` and `tausmooth`.";
         "gainprm" gainprm: [f64; PARAMETERS] = first(1.0), some(1, PARAMETERS, Any), "Gain: constant, by length, by velocity; of a muscle `range`, `force`, `scale`, `lmin`, `lmax`, `vmax`, `fpmax`, `fvmax`.";
         "biasprm" biasprm: [f64; PARAMETERS] = first(0.0), some(1, PARAMETERS, Any), "Bias: constant, by length, by velocity; a third that is positive where the second is minus the gain is a damping ratio; of a muscle as the gain.";
-        "actlimited" actlimited: Tri = Tri::Auto, TRI, "Whether `actrange` is enforced.";
+        "actlimited" actlimited: AutoBool = AutoBool::Auto, TRI, "Whether `actrange` is enforced.";
         "actearly" actearly: bool = false, FLAG, "Whether the force follows from the activation at the end of the step.";
         "actdim" actdim: i32 = -1, int(i32::MIN as i64, i32::MAX as i64), "Number of activations, which follows from `dyntype`: another is an error.";
     }
@@ -195,7 +195,7 @@ impl Actuator {
         self.at_site.apply(e);
         self.on_body.apply(e);
         check_target(e)?;
-        // what the elements below have in common with `general` they have by other names
+        // the elements below have these attributes of `general` under other names
         self.law.apply(e);
         match e.name {
             "motor" => {
@@ -213,7 +213,7 @@ impl Actuator {
             "damper" => {
                 self.law.gainprm = first(0.0);
                 self.law.gainprm[2] = -Speed::read(e).kv.unwrap_or(0.0);
-                self.control.limited = Tri::Yes;
+                self.control.limited = AutoBool::Yes;
                 self.decide(DynType::None, GainType::Affine, BiasType::None);
                 if self.ctrlrange.iter().any(|&end| end < 0.0) {
                     return Err(NEGATIVE_DAMPING);
@@ -223,7 +223,7 @@ impl Actuator {
             "adhesion" => {
                 self.law.gainprm[0] = Adhesion::read(e).gain.unwrap_or(self.law.gainprm[0]);
                 (self.law.gaintype, self.law.biastype) = (GainType::Fixed, BiasType::None);
-                self.control.limited = Tri::Yes;
+                self.control.limited = AutoBool::Yes;
                 if self.law.gainprm[0] < 0.0 {
                     return Err(REPULSION);
                 }
@@ -254,9 +254,9 @@ impl Actuator {
         self.law.biasprm[1] = -kp;
         match (servo.kv, servo.dampratio) {
             (Some(_), Some(_)) => return Err(TWO_DAMPINGS),
-            // zeros leave what a default gives, as in MuJoCo 3.3.0
+            // zeros keep the value of a default, as in MuJoCo 3.3.0
             (Some(kv), None) if kv != 0.0 => self.law.biasprm[2] = -kv,
-            // a positive number stands for the ratio until the inertia is known
+            // a positive number is the damping ratio until the inertia is known
             (None, Some(ratio)) if ratio != 0.0 => self.law.biasprm[2] = ratio,
             _ => {}
         }
@@ -277,7 +277,7 @@ impl Actuator {
             _ if inherits(self.activation.range) => return Err(TWO_ACT_RANGES),
             _ => {
                 self.law.dyntype = DynType::Integrator;
-                self.law.actlimited = Tri::Yes;
+                self.law.actlimited = AutoBool::Yes;
             }
         }
         Ok(())

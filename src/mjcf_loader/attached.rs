@@ -1,31 +1,18 @@
-//! Models whose bodies `<attach>` takes, the names of what refers to others, and keyframes that come along.
+//! Models for `<attach>`: the names by which elements refer to others, and the sizes of keyframes.
 
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::actuator::Actuator;
+use super::attachment::{CopyCount, ElementKind};
 use super::custom::Key;
 use super::document::{Body, Document};
-use super::error::{ErrorKind, LoadError};
 use super::mesh::Mesh;
-use super::relation::{Along, Equality, EqualityElements, Exclude, Pair, Tendon, WeldEquality};
-use super::sensor::{FrameOf, Object, Sensor};
-use super::xml::Tree;
+use super::relation::{Equality, EqualityElements, Exclude, Pair, Tendon, TendonElements, WeldEquality};
+use super::sensor::{FrameObject, Object, Sensor};
 use crate::model::{DynType, ObjType};
 
-/// A kind of element that others refer to.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub(super) enum ElementKind {
-    Body,
-    Joint,
-    Geom,
-    Site,
-    Camera,
-    Tendon,
-    Actuator,
-}
-
-/// An element that refers to others, and is left out where they do not come along.
-pub(super) trait Referring: Clone {
+/// An element that refers to others. `<attach>` leaves it out if those are not copied with it.
+pub(super) trait Reference: Clone {
     /// Whether one of two names, or some names of a tendon, may be those of things of the document itself.
     const LOOSE: bool;
 
@@ -35,18 +22,18 @@ pub(super) trait Referring: Clone {
     /// Returns its own name.
     fn name(&mut self) -> &mut String;
 
-    /// Returns the names that it refers to, with the kinds of what they name.
+    /// Returns the names that it refers to, with the kinds of the named elements.
     fn names(&mut self) -> Vec<(ElementKind, &mut String)>;
 
-    /// Returns what MuJoCo 3.3.0 looks for by its name in the model only, so that the element does not come along under another name:
-    /// geoms that a tendon wraps around without a side site.
+    /// Returns a name that MuJoCo 3.3.0 looks up in the model only, so that the element is not copied under another name: that of a geom
+    /// that a tendon wraps around without a side site.
     fn left(&self) -> Option<(ElementKind, String)> {
         None
     }
 
     /// Adds `suffix` to the names that it refers to, where that names something, as MuJoCo 3.3.0 does for a copy of the element; returns
     /// whether it makes the copy. With an empty suffix the result tells whether all is there that the element refers to.
-    fn readdress(&mut self, suffix: &str, known: &Known) -> bool {
+    fn readdress(&mut self, suffix: &str, known: &NameTable) -> bool {
         let mut names = self.names();
         names.retain(|(_, name)| !name.is_empty());
         let found: Vec<bool> = names
@@ -54,7 +41,7 @@ pub(super) trait Referring: Clone {
             .map(|(thing, name)| known.has(*thing, name, suffix))
             .collect();
         let some = found.contains(&true);
-        // what of two is not copied may be there itself
+        // one of two names need not be copied if it exists without the suffix
         let there =
             |((thing, name), found): (&(ElementKind, &mut String), &bool)| *found || known.has(*thing, name, "");
         let whole = match (some, Self::LOOSE) {
@@ -69,18 +56,18 @@ pub(super) trait Referring: Clone {
         whole
     }
 
-    /// Forgets what keyframes say of it.
+    /// Drops its values in keyframes.
     fn forget(&mut self) {}
 }
 
 /// The names that elements may refer to.
 #[derive(Default)]
-pub(super) struct Known {
+pub(super) struct NameTable {
     names: BTreeMap<ElementKind, BTreeSet<String>>,
 }
 
-impl Known {
-    /// Collects the names of bodies and what hangs on them, tendons and actuators.
+impl NameTable {
+    /// Collects the names of bodies with their elements, tendons and actuators.
     pub fn of(document: &Document) -> Self {
         let mut known = Self::default();
         known.add(document.bodies.iter().flat_map(hanging));
@@ -121,10 +108,10 @@ impl Known {
     }
 }
 
-/// Says what the elements refer to that have an `at` and a `name`.
+/// Implements [`Reference`] for elements with an `at` and a `name`.
 macro_rules! referring {
     ($($element:ident, $loose:literal, $this:ident => $names:expr $(, { $($own:tt)* })?;)*) => {$(
-        impl Referring for $element {
+        impl Reference for $element {
             const LOOSE: bool = $loose;
 
             fn at(&self) -> usize {
@@ -153,7 +140,7 @@ referring! {
             wrapped(self)
         }
 
-        fn readdress(&mut self, suffix: &str, known: &Known) -> bool {
+        fn readdress(&mut self, suffix: &str, known: &NameTable) -> bool {
             thread(&mut self.path, suffix, known)
         }
     };
@@ -185,26 +172,26 @@ fn held(held: &mut EqualityElements) -> Vec<(ElementKind, &mut String)> {
 }
 
 /// Returns the names of a piece of a tendon.
-fn along(piece: &mut Along) -> Vec<(ElementKind, &mut String)> {
+fn along(piece: &mut TendonElements) -> Vec<(ElementKind, &mut String)> {
     match piece {
-        Along::Joint(joint) => vec![(ElementKind::Joint, &mut joint.joint)],
-        Along::Site(site) => vec![(ElementKind::Site, &mut site.site)],
-        Along::Geom(geom) => {
+        TendonElements::Joint(joint) => vec![(ElementKind::Joint, &mut joint.joint)],
+        TendonElements::Site(site) => vec![(ElementKind::Site, &mut site.site)],
+        TendonElements::Geom(geom) => {
             let side = geom.sidesite.iter_mut().map(|site| (ElementKind::Site, site));
             std::iter::once((ElementKind::Geom, &mut geom.geom))
                 .chain(side)
                 .collect()
         }
-        Along::Pulley(_) => Vec::new(),
+        TendonElements::Pulley(_) => Vec::new(),
     }
 }
 
-/// As [`Referring::readdress`], of what a tendon runs along: pieces of which there are no copies stay. One with a geom and no side site is not
+/// As [`Reference::readdress`], of what a tendon runs along: pieces of which there are no copies stay. One with a geom and no side site is not
 /// copied, because MuJoCo 3.3.0 looks for a side site whose name is the suffix alone.
-fn thread(path: &mut [Along], suffix: &str, known: &Known) -> bool {
+fn thread(path: &mut [TendonElements], suffix: &str, known: &NameTable) -> bool {
     let mut copied = false;
     for piece in path {
-        let bare = matches!(piece, Along::Geom(geom) if geom.sidesite.as_ref().is_none_or(String::is_empty));
+        let bare = matches!(piece, TendonElements::Geom(geom) if geom.sidesite.as_ref().is_none_or(String::is_empty));
         let mut names = along(piece);
         names.retain(|(_, name)| !name.is_empty());
         if names.is_empty() {
@@ -224,7 +211,7 @@ fn thread(path: &mut [Along], suffix: &str, known: &Known) -> bool {
 /// Returns the first geom that a tendon wraps around without a side site.
 fn wrapped(tendon: &Tendon) -> Option<(ElementKind, String)> {
     tendon.path.iter().find_map(|piece| match piece {
-        Along::Geom(geom) if geom.sidesite.as_ref().is_none_or(String::is_empty) => {
+        TendonElements::Geom(geom) if geom.sidesite.as_ref().is_none_or(String::is_empty) => {
             Some((ElementKind::Geom, geom.geom.clone()))
         }
         _ => None,
@@ -262,7 +249,7 @@ fn measured(object: &mut Object) -> Vec<(ElementKind, &mut String)> {
         Object::Frame(of, within) => {
             let object = (framed(of.objtype), &mut of.objname);
             let reference = within.refname.iter_mut();
-            let kind = framed(within.reftype.unwrap_or(FrameOf::Body));
+            let kind = framed(within.reftype.unwrap_or(FrameObject::Body));
             std::iter::once(object)
                 .chain(reference.map(|name| (kind, name)))
                 .collect()
@@ -298,28 +285,16 @@ fn measured(object: &mut Object) -> Vec<(ElementKind, &mut String)> {
     }
 }
 
-fn framed(of: FrameOf) -> ElementKind {
+fn framed(of: FrameObject) -> ElementKind {
     match of {
-        FrameOf::Body | FrameOf::XBody => ElementKind::Body,
-        FrameOf::Geom => ElementKind::Geom,
-        FrameOf::Site => ElementKind::Site,
-        FrameOf::Camera => ElementKind::Camera,
+        FrameObject::Body | FrameObject::XBody => ElementKind::Body,
+        FrameObject::Geom => ElementKind::Geom,
+        FrameObject::Site => ElementKind::Site,
+        FrameObject::Camera => ElementKind::Camera,
     }
 }
 
-/// A keyframe that has left its model, with the document's name for it. What it says is kept by what it says it of: the rest is as in `qpos0`.
-#[derive(Clone)]
-pub(super) struct MovedKey {
-    pub at: usize,
-    pub name: String,
-    pub time: f64,
-}
-
-/// What keyframes say of one element, by their names: `qpos` and `qvel` of a joint, `act` and `ctrl` of an actuator, `mpos` and `mquat` of a
-/// mocap body.
-pub(super) type States = BTreeMap<String, [Vec<f64>; 2]>;
-
-/// The numbers of coordinates of a document, so far.
+/// The numbers of coordinates that the elements read so far need.
 #[derive(Clone, Copy, Default)]
 pub(super) struct Sizes {
     pub nq: usize,
@@ -372,7 +347,7 @@ pub(super) fn na(actuator: &Actuator) -> usize {
     usize::from(actuator.law.dyntype != DynType::None)
 }
 
-/// Returns the kinds and names of what hangs on a body.
+/// Returns the kinds and names of a body and its joints, geoms, sites and cameras.
 pub(super) fn hanging(body: &Body) -> impl Iterator<Item = (ElementKind, &String)> {
     let joints = body.joints.iter().map(|joint| (ElementKind::Joint, &joint.name));
     let geoms = body.geoms.iter().map(|geom| (ElementKind::Geom, &geom.name));
@@ -382,24 +357,7 @@ pub(super) fn hanging(body: &Body) -> impl Iterator<Item = (ElementKind, &String
     own.chain(joints).chain(geoms).chain(sites).chain(cameras)
 }
 
-/// A reference of an element of a model to one that did not come along, and its name: then the element did not, either.
-pub(super) struct Absent {
-    pub at: usize,
-    pub thing: ElementKind,
-    pub name: String,
-}
-
-/// How much was copied or looked at for bodies of other models, which the limits bound: a few bytes of text may ask for all of a model again.
-#[derive(Clone, Copy, Default)]
-pub(super) struct Amount {
-    elements: usize,
-    /// Numbers of assets.
-    numbers: usize,
-    /// Numbers in keyframes.
-    said: usize,
-}
-
-impl Amount {
+impl CopyCount {
     /// Counts all of a model.
     pub fn of(from: &Document) -> Self {
         let hung: usize = from
@@ -431,42 +389,5 @@ impl Amount {
             numbers,
             said: said(from),
         }
-    }
-
-    /// Adds the numbers in a document's keyframes.
-    ///
-    /// # Errors
-    /// As [`Amount::add`].
-    pub(super) fn add_keys(&mut self, said: usize, at: usize, tree: &Tree) -> Result<(), LoadError> {
-        let others = Self {
-            said,
-            ..Self::default()
-        };
-        self.add(others, at, tree)
-    }
-
-    /// Adds others for the element at a place.
-    ///
-    /// # Errors
-    /// It is more than the limits allow.
-    pub(super) fn add(&mut self, others: Self, at: usize, tree: &Tree) -> Result<(), LoadError> {
-        self.elements += others.elements;
-        self.numbers += others.numbers;
-        self.said += others.said;
-        let limits = &tree.limits;
-        for (what, found, limit) in [
-            ("elements of attached models", self.elements, limits.elements),
-            (
-                "numbers in assets of attached models",
-                self.numbers,
-                limits.mesh_elements,
-            ),
-            ("numbers in keyframes", self.said, limits.key_numbers),
-        ] {
-            if found > limit {
-                return Err(tree.error(at, ErrorKind::TooMuch { what, limit }));
-            }
-        }
-        Ok(())
     }
 }

@@ -4,7 +4,7 @@ mod store;
 
 use super::error::ErrorKind;
 use crate::limits::Limits;
-pub(super) use store::{Store, Visit};
+pub(super) use store::{AttributeField, FieldVisitor};
 
 /// Bounds on a number.
 #[derive(Clone, Copy)]
@@ -30,7 +30,7 @@ pub(super) enum Kind {
         max: usize,
         sign: Sign,
     },
-    /// Lower and upper bound, each of which may be infinite.
+    /// Lower and upper bound. Either may be infinite.
     Range,
     /// Four numbers that are not all zero.
     Quat,
@@ -40,9 +40,9 @@ pub(super) enum Kind {
     User,
     /// The length of such data; -1 for that of the longest.
     UserCount,
-    /// Numbers of which the compiler knows how many there must be, as many as a whole state has at most.
+    /// Numbers whose count the compiler checks, at most as many as a whole state has.
     State,
-    /// Numbers of which the compiler knows how many there must be, as many as all bodies have at most.
+    /// Numbers whose count the compiler checks, at most as many as all bodies have.
     Poses,
     /// Numbers of a mesh, as many as the limits allow.
     Data,
@@ -54,7 +54,7 @@ pub(super) enum Kind {
     LongText,
     /// A number of bytes, with a letter for its unit, or -1.
     Memory,
-    /// Groups of actuators from 0 to 30, of which each is a bit.
+    /// Groups of actuators from 0 to 30, as bits.
     Groups,
 }
 
@@ -78,16 +78,16 @@ pub(super) const fn some(min: usize, max: usize, sign: Sign) -> Kind {
 }
 
 impl Kind {
-    /// Returns the kind itself. A table asks whatever stands in its column of kinds, which may also be [`Words`].
+    /// Returns the kind itself. The column of kinds in a table may also hold [`Keywords`], which have the same method.
     pub const fn kind(self) -> Kind {
         self
     }
 
-    pub fn visit(self, field: &mut impl Store, visit: Visit) {
+    pub fn visit(self, field: &mut impl AttributeField, visit: FieldVisitor) {
         visit(field);
     }
 
-    /// Tells whether values are lists of numbers, of which an empty one counts as not given.
+    /// Tells whether values are lists of numbers. An empty list counts as not given.
     pub const fn is_numbers(self) -> bool {
         match self {
             Kind::Reals { .. } | Kind::Range | Kind::Quat | Kind::User | Kind::State | Kind::Poses | Kind::Data => true,
@@ -98,9 +98,9 @@ impl Kind {
     }
 }
 
-/// Words that an attribute may say, each with the value that it stands for.
+/// The keywords of an attribute, each with its value.
 #[derive(Clone, Copy)]
-pub(super) struct Words<T: 'static> {
+pub(super) struct Keywords<T: 'static> {
     pub names: &'static [&'static str],
     pub values: &'static [T],
 }
@@ -108,28 +108,28 @@ pub(super) struct Words<T: 'static> {
 /// Pairs words with values: `words! { "fixed" => false, "targetbody" => true }`.
 macro_rules! words {
     ($($name:literal => $value:expr),* $(,)?) => {
-        $crate::attribute::Words { names: &[$($name),*], values: &[$($value),*] }
+        $crate::attribute::Keywords { names: &[$($name),*], values: &[$($value),*] }
     };
 }
 pub(super) use words;
 
-impl<T: Copy + PartialEq> Words<T> {
+impl<T: Copy + PartialEq> Keywords<T> {
     pub const fn kind(self) -> Kind {
         Kind::Word(self.names)
     }
 
-    pub fn visit(self, field: &mut impl Worded<T>, visit: Visit) {
-        visit(&mut WordField { words: self, field });
+    pub fn visit(self, field: &mut impl KeywordField<T>, visit: FieldVisitor) {
+        visit(&mut KeywordBinding { words: self, field });
     }
 }
 
-/// A field together with the words for what it holds.
-struct WordField<'a, T: 'static, W> {
-    words: Words<T>,
+/// A field together with the keywords of its values.
+struct KeywordBinding<'a, T: 'static, W> {
+    words: Keywords<T>,
     field: &'a mut W,
 }
 
-impl<T: Copy + PartialEq, W: Worded<T>> Store for WordField<'_, T, W> {
+impl<T: Copy + PartialEq, W: KeywordField<T>> AttributeField for KeywordBinding<'_, T, W> {
     fn store(&mut self, value: &Value) {
         if let Value::Word(index) = value
             && let Some(value) = self.words.values.get(*index)
@@ -150,15 +150,15 @@ impl<T: Copy + PartialEq, W: Worded<T>> Store for WordField<'_, T, W> {
     }
 }
 
-/// A field that holds what a word stands for.
-pub(super) trait Worded<T> {
+/// A field that a keyword sets.
+pub(super) trait KeywordField<T> {
     fn set_word(&mut self, value: T);
 
-    /// Returns what it holds; nothing where nothing was given.
+    /// Returns the value, or `None` if none was given.
     fn word(&self) -> Option<T>;
 }
 
-impl<T: Copy> Worded<T> for T {
+impl<T: Copy> KeywordField<T> for T {
     fn set_word(&mut self, value: T) {
         *self = value;
     }
@@ -168,7 +168,7 @@ impl<T: Copy> Worded<T> for T {
     }
 }
 
-impl<T: Copy> Worded<T> for Option<T> {
+impl<T: Copy> KeywordField<T> for Option<T> {
     fn set_word(&mut self, value: T) {
         *self = Some(value);
     }
@@ -178,9 +178,9 @@ impl<T: Copy> Worded<T> for Option<T> {
     }
 }
 
-/// Attributes of which an element may have one at most.
+/// Groups of attributes that exclude each other: an element may have one of a group.
 #[derive(Clone, Copy, PartialEq, Eq)]
-pub(super) enum Rivals {
+pub(super) enum Alternatives {
     Orientation,
     Inertia,
     Transmission,
@@ -188,15 +188,18 @@ pub(super) enum Rivals {
     Second,
 }
 
-impl Rivals {
-    pub const ALL: [Rivals; 5] = [
-        Rivals::Orientation,
-        Rivals::Inertia,
-        Rivals::Transmission,
-        Rivals::First,
-        Rivals::Second,
+impl Alternatives {
+    pub const ALL: [Alternatives; 5] = [
+        Alternatives::Orientation,
+        Alternatives::Inertia,
+        Alternatives::Transmission,
+        Alternatives::First,
+        Alternatives::Second,
     ];
 }
+
+/// The groups of attributes of a table.
+pub(super) type Groups = &'static [&'static [Attr]];
 
 /// An attribute: one line of a table.
 #[derive(Clone, Copy)]
@@ -212,7 +215,7 @@ pub(super) struct Attr {
     pub required: bool,
     /// Whether it belongs to the element alone and has no place in a default class.
     pub own: bool,
-    pub rivals: Option<Rivals>,
+    pub rivals: Option<Alternatives>,
 }
 
 impl Attr {
@@ -242,35 +245,35 @@ impl Attr {
 
     pub const fn orientation(self) -> Attr {
         Attr {
-            rivals: Some(Rivals::Orientation),
+            rivals: Some(Alternatives::Orientation),
             ..self
         }
     }
 
     pub const fn inertia(self) -> Attr {
         Attr {
-            rivals: Some(Rivals::Inertia),
+            rivals: Some(Alternatives::Inertia),
             ..self
         }
     }
 
     pub const fn transmission(self) -> Attr {
         Attr {
-            rivals: Some(Rivals::Transmission),
+            rivals: Some(Alternatives::Transmission),
             ..self
         }
     }
 
     pub const fn first(self) -> Attr {
         Attr {
-            rivals: Some(Rivals::First),
+            rivals: Some(Alternatives::First),
             ..self
         }
     }
 
     pub const fn second(self) -> Attr {
         Attr {
-            rivals: Some(Rivals::Second),
+            rivals: Some(Alternatives::Second),
             ..self
         }
     }

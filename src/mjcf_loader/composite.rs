@@ -3,21 +3,21 @@
 use std::f64::consts::PI;
 
 use super::attribute::Sign::{Any, Positive};
-use super::attribute::{Attr, FLAG, Kind, TEXT, Words, int, real, reals, some, words};
+use super::attribute::{Attr, FLAG, Keywords, Kind, TEXT, int, real, reals, some, words};
 use super::compile::{frame_to_quat, normalize};
 use super::document::{Geom, Joint, Site};
 use super::table::{Table, table};
 use super::words::{MAX_SKIN_GROUP, SOLIMP, SOLREF};
 use crate::math::{Quat, Vec3, add, cross, dot, quat_mul, quat_rotate};
 
-/// Kinds of composites, of which MuJoCo 3.3.0 makes only one.
+/// Kinds of composites. MuJoCo 3.3.0 makes only one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum CompositeType {
     Cable,
     Gone,
 }
 
-const TYPES: Words<CompositeType> = words! {
+const TYPES: Keywords<CompositeType> = words! {
     "particle" => CompositeType::Gone,
     "grid" => CompositeType::Gone,
     "rope" => CompositeType::Gone,
@@ -149,7 +149,7 @@ pub(super) struct Link {
 }
 
 impl Composite {
-    /// Returns the points of the curve, or what is wrong with them.
+    /// Returns the points of the curve, or a description of a fault.
     fn points(&self) -> Result<Vec<Vec3>, &'static str> {
         if self.count.iter().any(|count| count.fract() != 0.0) {
             return Err("count must be whole numbers");
@@ -202,7 +202,7 @@ impl Composite {
         Ok(shapes)
     }
 
-    /// Returns the bodies, or what is wrong with the points.
+    /// Returns the bodies, or a description of a fault of the points.
     pub fn links(&self) -> Result<Vec<Link>, &'static str> {
         let points = self.points()?;
         if points.len() < 2 {

@@ -1,7 +1,7 @@
-//! Tables of what a document says to programs, and of the states that it names.
+//! Tables of custom data for programs, and of keyframes.
 
 use super::attribute::Sign::Any;
-use super::attribute::{Kind, TEXT, Words, int, real, some, words};
+use super::attribute::{Keywords, Kind, TEXT, int, real, some, words};
 use super::schema::Element;
 use super::table::{Table, table};
 
@@ -25,9 +25,9 @@ table! {
     }
 }
 
-/// What a tuple may name.
+/// The kinds of elements that a tuple may name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Named {
+pub(super) enum TupleObject {
     Body,
     Joint,
     Geom,
@@ -39,39 +39,39 @@ pub(super) enum Named {
     Material,
     Tendon,
     Actuator,
-    /// What nothing here refers to by its name.
+    /// Kinds whose names are not looked up.
     Other,
 }
 
-const NAMED: Words<Named> = words! {
-    "body" => Named::Body,
-    "xbody" => Named::Body,
-    "joint" => Named::Joint,
-    "geom" => Named::Geom,
-    "site" => Named::Site,
-    "camera" => Named::Camera,
-    "mesh" => Named::Mesh,
-    "hfield" => Named::HField,
-    "texture" => Named::Texture,
-    "material" => Named::Material,
-    "tendon" => Named::Tendon,
-    "actuator" => Named::Actuator,
-    "light" => Named::Other,
-    "skin" => Named::Other,
-    "pair" => Named::Other,
-    "exclude" => Named::Other,
-    "equality" => Named::Other,
-    "sensor" => Named::Other,
-    "numeric" => Named::Other,
-    "text" => Named::Other,
-    "tuple" => Named::Other,
-    "key" => Named::Other,
+const NAMED: Keywords<TupleObject> = words! {
+    "body" => TupleObject::Body,
+    "xbody" => TupleObject::Body,
+    "joint" => TupleObject::Joint,
+    "geom" => TupleObject::Geom,
+    "site" => TupleObject::Site,
+    "camera" => TupleObject::Camera,
+    "mesh" => TupleObject::Mesh,
+    "hfield" => TupleObject::HField,
+    "texture" => TupleObject::Texture,
+    "material" => TupleObject::Material,
+    "tendon" => TupleObject::Tendon,
+    "actuator" => TupleObject::Actuator,
+    "light" => TupleObject::Other,
+    "skin" => TupleObject::Other,
+    "pair" => TupleObject::Other,
+    "exclude" => TupleObject::Other,
+    "equality" => TupleObject::Other,
+    "sensor" => TupleObject::Other,
+    "numeric" => TupleObject::Other,
+    "text" => TupleObject::Other,
+    "tuple" => TupleObject::Other,
+    "key" => TupleObject::Other,
 };
 
 table! {
     /// An `<element>` of a tuple.
     element TupleElement {
-        "objtype" objtype: Option<Named> = None, NAMED, required, "Kind of what is named.";
+        "objtype" objtype: Option<TupleObject> = None, NAMED, required, "Kind of what is named.";
         "objname" objname: String = String::new(), TEXT, required, "Its name.";
         check "prm", real(Any), "A number for programs. Not kept.";
     }
@@ -86,7 +86,7 @@ table! {
 }
 
 impl Tuple {
-    /// Reads the element with what it lists.
+    /// Reads the element with its list.
     pub fn hold(e: &Element) -> Self {
         let elements = e.children.iter().map(TupleElement::read).collect();
         Self {

@@ -1,5 +1,5 @@
 //! The typed document: every element with its defaults applied, references still by name, angles still as written. Here
-//! are the tables of bodies and what hangs on them, and the document as a whole.
+//! are the tables of bodies and their elements, and the document as a whole.
 
 use std::collections::BTreeMap;
 
@@ -7,7 +7,7 @@ use crate::math::Vec3;
 use crate::model::{self, CamLight, GeomType, JointType, Options, Statistic};
 
 use super::actuator::Actuator;
-use super::attached::{Absent, Amount, MovedKey, States};
+use super::attachment::{AttachedKeyframe, CopyCount, KeyframeValues, MissingReference};
 use super::attribute::Sign::{Any, NonNegative, Positive};
 use super::attribute::{FLAG, INTS, Kind, RANGE, TEXT, int, real, reals, some};
 use super::custom::{Key, Numeric, Text, Tuple};
@@ -23,23 +23,23 @@ use super::words::{
 
 use super::settings::Visual;
 pub(super) use super::settings::{Compiler, LengthRange, Size};
-pub(super) use super::words::{Frame, Orientation, Tri};
+pub(super) use super::words::{AutoBool, Frame, Orientation};
 
 table! {
     /// `<joint>`.
     element Joint {
         also within: Option<usize> = None;
-        also align: Tri = Tri::Auto;
-        also states: States = States::new();
+        also align: AutoBool = AutoBool::Auto;
+        also states: KeyframeValues = KeyframeValues::new();
         "name" name: String = String::new(), TEXT, own, "Name.";
         "type" kind: JointType = JointType::Hinge, JOINTS, "Kind of motion.";
         "group" group: usize = 0, int(0, MAX_GROUP), "Visual group.";
         "pos" pos: Vec3 = [0.0; 3], reals(3, Any), "Anchor in the body, m.";
         "axis" axis: Vec3 = [0.0, 0.0, 1.0], reals(3, Any), "Axis in the body.";
-        "limited" limited: Tri = Tri::Auto, TRI, "Whether the limit is enforced.";
+        "limited" limited: AutoBool = AutoBool::Auto, TRI, "Whether the limit is enforced.";
         "range" range: [f64; 2] = [0.0; 2], RANGE, "Lower and upper limit, angle or m.";
         "margin" margin: f64 = 0.0, real(NonNegative), "Distance to the limit at which it becomes active.";
-        "actuatorfrclimited" actuatorfrclimited: Tri = Tri::Auto, TRI, "Whether `actuatorfrcrange` is enforced.";
+        "actuatorfrclimited" actuatorfrclimited: AutoBool = AutoBool::Auto, TRI, "Whether `actuatorfrcrange` is enforced.";
         "actuatorgravcomp" actuatorgravcomp: bool = false, FLAG, "Whether its actuators hold up the weight that `gravcomp` compensates.";
         "actuatorfrcrange" actuatorfrcrange: [f64; 2] = [0.0; 2], RANGE, "Range of the force of all actuators on the joint, N m or N.";
         "springdamper" springdamper: [f64; 2] = [0.0; 2], reals(2, NonNegative), "Time constant, s, and damping ratio of the joint alone, from which stiffness and damping follow in place of those given.";
@@ -62,7 +62,7 @@ table! {
     element FreeJoint {
         "name" name: String = String::new(), TEXT, own, "Name.";
         "group" group: usize = 0, int(0, MAX_GROUP), "Visual group.";
-        "align" align: Tri = Tri::Auto, TRI, "Whether the frame of the body is moved into its centre of mass and along its principal axes, where no other bodies are in it; `auto`: as `alignfree` of the compiler.";
+        "align" align: AutoBool = AutoBool::Auto, TRI, "Whether the frame of the body is moved into its centre of mass and along its principal axes, where no other bodies are in it; `auto`: as `alignfree` of the compiler.";
     }
 }
 
@@ -172,7 +172,7 @@ table! {
 }
 
 table! {
-    /// `<body>` with what hangs on it; children follow their parents in the list of bodies.
+    /// `<body>` with its elements; children follow their parents in the list of bodies.
     element Body {
         also parent: usize = 0;
         also within: Option<usize> = None;
@@ -182,7 +182,7 @@ table! {
         also sites: Vec<Site> = Vec::new();
         also cameras: Vec<Camera> = Vec::new();
         also lights: Vec<Light> = Vec::new();
-        also states: States = States::new();
+        also states: KeyframeValues = KeyframeValues::new();
         "name" name: String = String::new(), TEXT, own, "Name.";
         "user" user: Vec<f64> = Vec::new(), Kind::User, "Numbers for programs.";
         "mocap" mocap: bool = false, FLAG, "Whether a program moves it, by `mocap_pos` and `mocap_quat` of the state.";
@@ -193,19 +193,19 @@ table! {
 }
 
 table! {
-    /// `<frame>` in a body: a pose that what it holds, but for an `inertial`, is placed in. Frames follow those that they are in.
+    /// `<frame>` in a body: the pose of all elements in it, except for an `inertial`. Inner frames follow outer ones.
     element BodyFrame {
         also within: Option<usize> = None;
-        also copy: Option<Copied> = None;
+        also copy: Option<ReplicaIndex> = None;
         "name" name: String = String::new(), TEXT, own, "Name.";
         check "childclass", TEXT, "Default class of the elements in it that name none.";
         with frame: Frame;
     }
 }
 
-/// Which copy of what a `<replicate>` holds a frame is for: its pose is the step from the copy before.
+/// The copy of a `<replicate>` that a frame belongs to. The frame's pose is the step from the copy before.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Copied {
+pub(super) struct ReplicaIndex {
     /// Number of the copy, from 0 on.
     pub number: usize,
     /// Frame of the copy before, if there is one.
@@ -213,7 +213,7 @@ pub(super) struct Copied {
 }
 
 table! {
-    /// `<replicate>` in a body: copies of what it holds, of which each is placed by the one before. Names get the number of the copy.
+    /// `<replicate>` in a body: copies of its content, each placed relative to the one before. Names get the number of the copy.
     element Replicate {
         "count" count: i32 = 0, int(i32::MIN as i64, i32::MAX as i64), required, "Number of copies; none where it is not positive.";
         "sep" sep: String = String::new(), TEXT, "What stands between a name and the number of the copy.";
@@ -224,7 +224,7 @@ table! {
 }
 
 table! {
-    /// `<asset><model>`: another document, of which `<attach>` takes bodies.
+    /// `<asset><model>`: another document, whose bodies `<attach>` copies.
     element ModelAsset {
         "name" name: String = String::new(), TEXT, "Name; else that which the model has itself.";
         check "file", TEXT, "File of the model, an MJCF document.";
@@ -241,7 +241,7 @@ table! {
     }
 }
 
-/// Everything a document says.
+/// The content of a document.
 pub(super) struct Document {
     pub model: String,
     /// Settings of the document and of the models that it names, as the tree lists them; none in a model.
@@ -261,13 +261,13 @@ pub(super) struct Document {
     pub bodies: Vec<Body>,
     /// Frames in the bodies, which elements name by their place here.
     pub frames: Vec<BodyFrame>,
-    /// How much each `<replicate>` copied, and how many elements were looked at for what refers to copies.
+    /// Number of elements that `<replicate>` copied, and of elements searched for references to copies.
     pub copies: usize,
     pub looks: usize,
-    /// References to elements that did not come along with bodies of other models.
-    pub absent: Vec<Absent>,
+    /// References to elements that `<attach>` did not copy.
+    pub absent: Vec<MissingReference>,
     /// How much was copied of other models, here and in those.
-    pub copied: Amount,
+    pub copied: CopyCount,
     /// Other models, by name.
     pub models: BTreeMap<String, Document>,
     pub pairs: Vec<Pair>,
@@ -281,11 +281,11 @@ pub(super) struct Document {
     pub texts: Vec<Text>,
     pub keys: Vec<Key>,
     /// Keyframes that came along with bodies of other models or with copies; they follow the document's own.
-    pub moved_keys: Vec<MovedKey>,
+    pub moved_keys: Vec<AttachedKeyframe>,
 }
 
 impl Document {
-    /// Returns a document that says nothing but its name; `at` is its root.
+    /// Returns an empty document with a name; `at` is its root.
     pub fn new(at: usize, model: String) -> Self {
         let world = Body {
             at,
@@ -311,7 +311,7 @@ impl Document {
             copies: 0,
             looks: 0,
             absent: Vec::new(),
-            copied: Amount::default(),
+            copied: CopyCount::default(),
             models: BTreeMap::new(),
             pairs: Vec::new(),
             excludes: Vec::new(),

@@ -8,7 +8,7 @@ use crate::model::GeomType;
 use super::document::{Body, Camera, Document};
 use super::error::LoadError;
 use super::geom_volume;
-use super::spec::{Places, Spec};
+use super::spec::{Locations, Spec};
 use super::xml::Tree;
 use super::{compile, read};
 
@@ -107,7 +107,7 @@ impl Draft {
         })
     }
 
-    /// Compiles the document, with what was changed, into ids and arrays. Textures and meshes are looked up in `source`.
+    /// Compiles the document, with all changes, into ids and arrays. Textures and meshes are looked up in `source`.
     ///
     /// # Errors
     /// As [`super::load`]; an element at fault is named with its place in the text.
@@ -115,7 +115,7 @@ impl Draft {
         let Self { tree, mut document, .. } = self;
         compile::leave_out(&tree, &mut document)?;
         let (arrays, bodies) = compile::compile(&tree, &document, source)?;
-        let places = Places {
+        let places = Locations {
             bodies,
             tendons: document.tendons.iter().map(|tendon| tendon.at).collect(),
             actuators: document.actuators.iter().map(|actuator| actuator.at).collect(),
@@ -129,7 +129,7 @@ impl Draft {
         })
     }
 
-    /// Sets what the names of bodies, joints, sites, cameras and actuators begin with that are asked for from now on; others are left out.
+    /// Sets a prefix: later calls see only bodies, joints, sites, cameras and actuators whose names begin with it, and take names without it.
     pub fn set_prefix(&mut self, prefix: &str) {
         self.prefix = prefix.to_string();
     }

@@ -6,7 +6,7 @@ use crate::model::{Flags, Options, SensorType, Statistic};
 use super::actuator::{
     Activation, Actuator, Adhesion, AtSite, Control, Cylinder, Filter, Law, Muscle, OnBody, Servo, Speed, Target,
 };
-use super::attribute::{Attr, TEXT};
+use super::attribute::{Attr, Groups, TEXT};
 use super::composite::{self, Composite, CompositeJoint, CompositeSkin};
 use super::custom::{Key, Numeric, Text, Tuple, TupleElement};
 use super::document::{
@@ -24,9 +24,6 @@ use super::settings::{Global, Headlight, LengthRange, Map, Quality, Rgba, Root, 
 use super::skin::{Bone, Skin};
 use super::surface::{Layer, Material, Texture};
 use super::table::Table;
-
-/// The groups of attributes of a table.
-type Groups = &'static [&'static [Attr]];
 
 const fn rule(name: &'static str, tables: &'static [Groups], children: &'static [&'static Rule]) -> Rule {
     Rule { name, tables, children }
@@ -113,7 +110,7 @@ static BODY: Rule = rule(
         &BODY, &INERTIAL, &JOINT, &FREEJOINT, &GEOM, &SITE, &CAMERA, &LIGHT, &FRAME, &REPLICATE, &ATTACH, &COMPOSITE,
     ],
 );
-/// In the world it can hold what the world can, which the reader checks.
+/// In the world it can hold the elements of the world only, which the reader checks.
 static FRAME: Rule = rule(
     "frame",
     &[BodyFrame::ATTRIBUTES],
@@ -178,7 +175,7 @@ static TENDON: Rule = rule("tendon", &[], &[&FIXED, &SPATIAL]);
 
 /// Attributes of all actuators.
 const DRIVE: Groups = Actuator::ATTRIBUTES;
-/// Attributes that name what they act on, and where.
+/// Attributes of the transmission.
 const TARGET: Groups = Target::ATTRIBUTES;
 const SITE_TARGET: Groups = AtSite::ATTRIBUTES;
 static GENERAL: Rule = rule(
@@ -335,7 +332,7 @@ static TUPLE_ELEMENT: Rule = rule("element", &[TupleElement::ATTRIBUTES], &[]);
 static TUPLE: Rule = rule("tuple", &[Tuple::ATTRIBUTES], &[&TUPLE_ELEMENT]);
 static CUSTOM: Rule = rule("custom", &[], &[&NUMERIC, &CUSTOM_TEXT, &TUPLE]);
 
-/// Plugins, which are refused by their names; what declares them says nothing without.
+/// Plugins, which are refused by their names. Their declarations alone have no effect.
 static EXTENSION: Rule = rule("extension", &[], &[]);
 
 static KEY: Rule = rule("key", &[Key::ATTRIBUTES], &[]);

@@ -5,9 +5,9 @@ use std::fmt;
 
 use crate::assets::AssetError;
 
-/// The place in a document where an error was found.
+/// A location in a document: file, line, column and element.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Place {
+pub struct Location {
     /// Path of the document in the asset source.
     pub file: String,
     /// Line, from 1; 0 when the error concerns the whole file.
@@ -18,7 +18,7 @@ pub struct Place {
     pub element: String,
 }
 
-impl fmt::Display for Place {
+impl fmt::Display for Location {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{}", self.file)?;
         if self.line > 0 {
@@ -36,23 +36,23 @@ impl fmt::Display for Place {
 pub(super) const UNREAD: &str =
     "the library allows this element but does not read it: please report this as a bug, and remove it until then";
 
-/// Reports what is wrong with a document that makes no model, and where.
+/// An error of a document, with its location.
 ///
 /// Prints as `babybench/mimo_v1.xml:12:5: mujoco/body/geom: unknown attribute "foo"`.
 #[derive(Debug, thiserror::Error)]
 #[error("{place}: {kind}")]
 pub struct LoadError {
     /// The place in the document.
-    pub place: Box<Place>,
+    pub place: Box<Location>,
     /// Description of the fault.
     pub kind: ErrorKind,
 }
 
 impl LoadError {
     pub(super) fn in_file(file: &str, kind: impl Into<ErrorKind>) -> Self {
-        let place = Place {
+        let place = Location {
             file: file.to_owned(),
-            ..Place::default()
+            ..Location::default()
         };
         LoadError {
             place: Box::new(place),
@@ -68,7 +68,7 @@ pub enum ErrorKind {
     /// A file cannot be had from the source.
     #[error(transparent)]
     Asset(#[from] AssetError),
-    /// The file is neither UTF-8 nor says that it is Latin-1.
+    /// The file is neither UTF-8 nor declared as Latin-1.
     #[error("not UTF-8 text, nor does it begin with <?xml version=\"1.0\" encoding=\"ISO-8859-1\"?>")]
     NotUtf8,
     /// The text breaks the rules of XML.
@@ -105,7 +105,7 @@ pub enum ErrorKind {
     Plugin {
         /// The plugin; empty where the element names an instance of one.
         name: String,
-        /// What to do without it.
+        /// Advice.
         what: &'static str,
     },
     /// An element of a part of the language that is not supported.
@@ -113,7 +113,7 @@ pub enum ErrorKind {
     UnsupportedElement {
         /// The element.
         name: String,
-        /// What it is, and what to do.
+        /// Explanation and advice.
         what: &'static str,
     },
     /// An element that may stand here once only.
@@ -131,7 +131,7 @@ pub enum ErrorKind {
     /// A required attribute is missing.
     #[error("attribute \"{0}\" is required")]
     MissingAttribute(&'static str),
-    /// More user data than `<size>` says.
+    /// More user data than `<size>` allows.
     #[error("user has {count} values, more than {attribute} in <size>")]
     UserExcess {
         /// The attribute of `<size>`.
@@ -215,7 +215,7 @@ pub enum ErrorKind {
     /// A mesh, a height field or a picture that cannot be read.
     #[error("{}{message}", .file.as_ref().map(|file| format!("file \"{}\": ", quoted(file))).unwrap_or_default())]
     Mesh {
-        /// The file; none for what stands in the document itself.
+        /// The file; `None` for data in the document itself.
         file: Option<String>,
         /// Description of the fault.
         message: String,

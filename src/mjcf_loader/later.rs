@@ -1,21 +1,19 @@
-//! What MuJoCo's language has gained after 3.3.0, through 4.0: read where it changes nothing or has another name, refused by its name
-//! otherwise.
+//! Elements and attributes that MuJoCo added after 3.3.0, through 4.0. They are read if they change nothing or only have another name, and
+//! refused by their name otherwise.
 
-use super::schema::Rule;
-
-/// What becomes of an attribute of a later version.
+/// The treatment of an attribute that MuJoCo added after 3.3.0.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Later {
-    /// With its value everything is as without it.
+pub(super) enum LaterAttribute {
+    /// The value changes nothing: the attribute is dropped.
     Nothing,
-    /// It is another attribute, with this value.
+    /// It is replaced by this attribute with this value.
     As(&'static str, &'static str),
-    /// It has no counterpart.
+    /// It has no counterpart: an error.
     Refused,
 }
 
 /// Values with which an attribute changes nothing.
-enum Same {
+enum NeutralValue {
     /// One of these words.
     Words(&'static [&'static str]),
     /// Zeros.
@@ -27,74 +25,82 @@ enum Same {
 }
 
 /// Elements, an attribute that they have in later versions, and with which values it changes nothing.
-const ATTRIBUTES: &[(&[&str], &str, Same)] = &[
-    // what MuJoCo writes when it saves a model
+const ATTRIBUTES: &[(&[&str], &str, NeutralValue)] = &[
+    // MuJoCo writes these when it saves a model
     (&["compiler"], "savecanonical", FLAG),
     (&["compiler"], "savecompiled", FLAG),
     (&["compiler"], "saveinertial", FLAG),
-    (&["compiler"], "conflict", Same::Never),
-    (&["compiler"], "passthrough", Same::Never),
+    (&["compiler"], "conflict", NeutralValue::Never),
+    (&["compiler"], "passthrough", NeutralValue::Never),
     // both together are what `passive` was
-    (&["flag"], "damper", Same::Words(&["enable"])),
-    (&["flag"], "spring", Same::Words(&["enable"])),
-    (&["flag"], "diagexact", Same::Words(&["disable"])),
-    (&["flag"], "ipc", Same::Words(&["disable"])),
-    (&["flag"], "sleep", Same::Words(&["disable"])),
-    (&["flag"], "speculative", Same::Words(&["disable"])),
-    (&["option"], "sleep_tolerance", Same::Number), // of bodies that may sleep
-    (&["global"], "cameraid", Same::Number),        // of the viewer
-    (&["mesh"], "builtin", Same::Never),
-    (&["mesh"], "material", Same::Never),
-    (&["mesh"], "params", Same::Never),
-    (&["texture"], "class", Same::Never),
-    (&["texture"], "colorspace", Same::Words(&["auto"])),
-    (&["texture"], "embed", Same::Never),
+    (&["flag"], "damper", NeutralValue::Words(&["enable"])),
+    (&["flag"], "spring", NeutralValue::Words(&["enable"])),
+    (&["flag"], "diagexact", NeutralValue::Words(&["disable"])),
+    (&["flag"], "ipc", NeutralValue::Words(&["disable"])),
+    (&["flag"], "sleep", NeutralValue::Words(&["disable"])),
+    (&["flag"], "speculative", NeutralValue::Words(&["disable"])),
+    (&["option"], "sleep_tolerance", NeutralValue::Number), // of bodies that may sleep
+    (&["global"], "cameraid", NeutralValue::Number),        // of the viewer
+    (&["mesh"], "builtin", NeutralValue::Never),
+    (&["mesh"], "material", NeutralValue::Never),
+    (&["mesh"], "params", NeutralValue::Never),
+    (&["texture"], "class", NeutralValue::Never),
+    (&["texture"], "colorspace", NeutralValue::Words(&["auto"])),
+    (&["texture"], "embed", NeutralValue::Never),
     (&["geom"], "castshadow", FLAG), // shadows are not drawn
-    (&["geom", "pair"], "adhesion", Same::Zeros),
-    (&["geom"], "surfacevel", Same::Zeros),
-    (&["site"], "mesh", Same::Never),
-    (&["camera"], "output", Same::Words(&["rgb"])),
-    (&["camera"], "projection", Same::Words(&["perspective"])),
-    (&["light"], "type", Same::Never), // but for those in `attribute`
-    (&["light"], "intensity", Same::Never),
-    (&["light"], "range", Same::Never),
-    (&["light"], "softness", Same::Never),
-    (&["light"], "texture", Same::Never),
-    (&["joint", "spatial", "fixed", "tendon"], "springyield", Same::Never),
-    (&["spatial", "fixed", "tendon"], "actuatorfrclimited", Same::Never),
-    (&["spatial", "fixed", "tendon"], "actuatorfrcrange", Same::Never),
-    (&["spatial", "fixed", "tendon"], "armature", Same::Zeros),
-    (&["attach"], "frame", Same::Never),
-    (&["general"], "inheritrange", Same::Zeros),
-    (&["intvelocity"], "actlimited", Same::Words(&["true"])), // its activations always have a range
-    (&["rangefinder"], "camera", Same::Never),
-    (&["rangefinder"], "data", Same::Never),
-    (&["key"], "plastic", Same::Never),
+    (&["geom", "pair"], "adhesion", NeutralValue::Zeros),
+    (&["geom"], "surfacevel", NeutralValue::Zeros),
+    (&["site"], "mesh", NeutralValue::Never),
+    (&["camera"], "output", NeutralValue::Words(&["rgb"])),
+    (&["camera"], "projection", NeutralValue::Words(&["perspective"])),
+    (&["light"], "type", NeutralValue::Never), // but for those in `attribute`
+    (&["light"], "intensity", NeutralValue::Never),
+    (&["light"], "range", NeutralValue::Never),
+    (&["light"], "softness", NeutralValue::Never),
+    (&["light"], "texture", NeutralValue::Never),
+    (
+        &["joint", "spatial", "fixed", "tendon"],
+        "springyield",
+        NeutralValue::Never,
+    ),
+    (
+        &["spatial", "fixed", "tendon"],
+        "actuatorfrclimited",
+        NeutralValue::Never,
+    ),
+    (&["spatial", "fixed", "tendon"], "actuatorfrcrange", NeutralValue::Never),
+    (&["spatial", "fixed", "tendon"], "armature", NeutralValue::Zeros),
+    (&["attach"], "frame", NeutralValue::Never),
+    (&["general"], "inheritrange", NeutralValue::Zeros),
+    (&["intvelocity"], "actlimited", NeutralValue::Words(&["true"])), // its activations always have a range
+    (&["rangefinder"], "camera", NeutralValue::Never),
+    (&["rangefinder"], "data", NeutralValue::Never),
+    (&["key"], "plastic", NeutralValue::Never),
 ];
 
 /// Of all actuators.
-const ACTUATORS: &[(&str, Same)] = &[
-    ("armature", Same::Zeros),
-    ("damping", Same::Zeros),
-    ("delay", Same::Zeros),
-    ("nsample", Same::Zeros),
-    ("ffrange", Same::Never),
-    ("input", Same::Never),
-    ("interp", Same::Never),
-    ("velrange", Same::Never),
+const ACTUATORS: &[(&str, NeutralValue)] = &[
+    ("armature", NeutralValue::Zeros),
+    ("damping", NeutralValue::Zeros),
+    ("delay", NeutralValue::Zeros),
+    ("nsample", NeutralValue::Zeros),
+    ("ffrange", NeutralValue::Never),
+    ("input", NeutralValue::Never),
+    ("interp", NeutralValue::Never),
+    ("velrange", NeutralValue::Never),
 ];
 
 /// Of all sensors.
-const SENSORS: &[(&str, Same)] = &[
-    ("delay", Same::Zeros),
-    ("interval", Same::Zeros),
-    ("nsample", Same::Zeros),
-    ("interp", Same::Never),
+const SENSORS: &[(&str, NeutralValue)] = &[
+    ("delay", NeutralValue::Zeros),
+    ("interval", NeutralValue::Zeros),
+    ("nsample", NeutralValue::Zeros),
+    ("interp", NeutralValue::Never),
 ];
 
-const FLAG: Same = Same::Words(&["true", "false"]);
+const FLAG: NeutralValue = NeutralValue::Words(&["true", "false"]);
 
-/// Elements, each after what it stands in.
+/// Elements, each after its parent.
 const ELEMENTS: &[(&str, &str)] = &[
     ("actuator", "dcmotor"),
     ("actuator", "orientation"),
@@ -107,34 +113,36 @@ const ELEMENTS: &[(&str, &str)] = &[
     ("sensor", "tendonactuatorfrc"),
 ];
 
-/// Tells what becomes of an attribute that 3.3.0 does not have; `None` where later versions do not have it either.
-pub(super) fn attribute(rule: &Rule, name: &str, text: &str) -> Option<Later> {
-    match (rule.name, name, text) {
-        ("light", "type", "spot") => return Some(Later::As("directional", "false")),
-        ("light", "type", "directional") => return Some(Later::As("directional", "true")),
+/// Returns the treatment of an attribute that an element, which `has` others, does not have in 3.3.0; `None` if later versions do not have it,
+/// either.
+pub(super) fn attribute(element: &str, has: impl Fn(&str) -> bool, name: &str, text: &str) -> Option<LaterAttribute> {
+    match (element, name, text) {
+        ("light", "type", "spot") => return Some(LaterAttribute::As("directional", "false")),
+        ("light", "type", "directional") => return Some(LaterAttribute::As("directional", "true")),
         _ => {}
     }
-    let has = |attribute: &str| rule.attributes().any(|attr| attr.name == attribute);
-    let common = match rule.name {
-        _ if has("noise") => SENSORS,
-        _ if has("gear") || has("ctrlrange") => ACTUATORS,
-        _ => &[],
+    let common = if has("noise") {
+        SENSORS
+    } else if has("gear") || has("ctrlrange") {
+        ACTUATORS
+    } else {
+        &[]
     };
-    let own = ATTRIBUTES.iter().filter(|(elements, ..)| elements.contains(&rule.name));
+    let own = ATTRIBUTES.iter().filter(|(elements, ..)| elements.contains(&element));
     let own = own.map(|(_, attribute, same)| (*attribute, same));
     let mut all = own.chain(common.iter().map(|(attribute, same)| (*attribute, same)));
     let (_, same) = all.find(|(attribute, _)| *attribute == name)?;
     let number = |word: &str| word.parse().unwrap_or(f64::NAN);
     let changes_nothing = match same {
-        Same::Words(words) => words.contains(&text),
-        Same::Zeros => text.split_whitespace().all(|word| number(word) == 0.0),
-        Same::Number => number(text.trim()).is_finite(),
-        Same::Never => false,
+        NeutralValue::Words(words) => words.contains(&text),
+        NeutralValue::Zeros => text.split_whitespace().all(|word| number(word) == 0.0),
+        NeutralValue::Number => number(text.trim()).is_finite(),
+        NeutralValue::Never => false,
     };
     Some(if changes_nothing {
-        Later::Nothing
+        LaterAttribute::Nothing
     } else {
-        Later::Refused
+        LaterAttribute::Refused
     })
 }
 

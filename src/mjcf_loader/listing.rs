@@ -7,7 +7,7 @@ use super::schema::{DEFAULT, Rule};
 /// An element that the loader understands.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ElementInfo {
-    /// Where it stands, for instance `worldbody/body/geom`. Elements that may also stand elsewhere are listed once.
+    /// Its path, for instance `worldbody/body/geom`. An element that is allowed in several places is listed once.
     pub path: String,
     /// Its attributes, in the order of its table.
     pub attributes: Vec<AttributeInfo>,
@@ -54,7 +54,7 @@ fn list(rule: &'static Rule, above: &str, found: &mut Vec<(&'static Rule, Elemen
         "" | "mujoco" => rule.name.to_owned(),
         _ => format!("{above}/{}", rule.name),
     };
-    // What takes defaults names the class that it takes them from.
+    // elements with defaults may name the class of these
     let classes = rule.attributes().any(|attr| attr.own && attr.name == "class");
     let mut attributes: Vec<AttributeInfo> = Vec::new();
     for attr in rule.attributes() {

@@ -3,7 +3,7 @@
 use crate::math::Vec3;
 
 use super::attribute::Sign::Any;
-use super::attribute::{FLAG, Kind, TEXT, Words, int, reals, words};
+use super::attribute::{FLAG, Keywords, Kind, TEXT, int, reals, words};
 use super::table::table;
 use super::words::MAX_COUNT;
 
@@ -12,7 +12,7 @@ use super::words::MAX_COUNT;
 pub(super) enum MeshInertia {
     /// Those of the convex hull.
     Convex,
-    /// Those of what the surface encloses, which must be closed.
+    /// Those of the enclosed volume; the surface must be closed.
     Exact,
     /// Those of all pyramids over triangles, counted positive wherever they are.
     Legacy,
@@ -20,7 +20,7 @@ pub(super) enum MeshInertia {
     Shell,
 }
 
-const INERTIAS: Words<MeshInertia> = words! {
+const INERTIAS: Keywords<MeshInertia> = words! {
     "convex" => MeshInertia::Convex,
     "legacy" => MeshInertia::Legacy,
     "exact" => MeshInertia::Exact,

@@ -1,17 +1,15 @@
-//! MJCF text -> [`Spec`], of which `compile` of mjcf-sim-physics makes a `Model`.
+//! MJCF text -> [`Spec`], which `compile` of mjcf-sim-physics turns into a `Model`.
 //!
 //! Three stages, each its own type: a tree of XML elements with includes spliced in, a typed document with default
 //! classes applied and references by name, and the [`Spec`] with MuJoCo 3.3.0's ids and units. Nothing here knows
-//! physics: what needs dynamics (`*_invweight0`, statistics, poses of welds at `qpos0`) comes with the last step.
+//! physics: quantities that need dynamics (`*_invweight0`, statistics, poses of welds at `qpos0`) come with the last step.
 //!
-//! The loader understands what the models of this project and the original BabyBench files use, and of the rest of the language
-//! whatever needs no deformable bodies, with few exceptions; the elements and
-//! attributes are listed by `babybench inspect --mjcf`. Everything else is an error that names the place. Ignored are only the
-//! memory reservations in `size`, the matrix format `jacobian`, the skin of a cable, and the colours in `visual/rgba` of what only MuJoCo's
-//! viewer draws: none changes a compiled array of physics. User data (`user` of actuators and cameras, `nuser_*`) are kept
-//! and mean nothing.
+//! The loader understands MuJoCo 3.3.0's language except for deformable bodies, plugins and a few elements; [`elements`] and
+//! `babybench inspect --mjcf` list all elements and attributes. Everything else is an error that names the place. Ignored are only the
+//! memory reservations in `size`, the matrix format `jacobian`, and the colours and sizes in `visual` of decorations in MuJoCo's viewer:
+//! none changes a compiled array of physics. User data (`user`, `nuser_*`) are kept for programs.
 //!
-//! Text may come from anywhere. Whatever it says, loading ends with a [`Spec`] or a [`LoadError`]; [`Limits`] bound stack
+//! Text may come from anywhere: loading ends with a [`Spec`] or a [`LoadError`]; [`Limits`] bound stack
 //! and memory.
 //!
 //! ```
@@ -31,6 +29,7 @@
 
 mod actuator;
 mod attached;
+mod attachment;
 mod attribute;
 mod compile;
 mod composite;
@@ -61,10 +60,10 @@ mod xml;
 pub use compile::bounding_radius;
 use compile::volume as geom_volume;
 pub use draft::{Draft, DraftActuator, DraftGeom};
-pub use error::{ErrorKind, LoadError, Place};
+pub use error::{ErrorKind, LoadError, Location};
 pub use listing::{AttributeInfo, ElementInfo, elements};
 pub use settings::{LengthRange, LengthRangeMode};
-pub use spec::Places;
+pub use spec::Locations;
 pub use spec::Spec;
 pub use xml::{Node, Tree};
 

@@ -4,6 +4,7 @@ mod attach;
 mod cable;
 mod cable_skin;
 mod content;
+mod insertion;
 mod keys;
 mod replicate;
 #[cfg(test)]
@@ -26,7 +27,8 @@ use super::surface::{Material, Texture};
 use super::table::Table;
 use super::xml::{ModelFile, Tree};
 use crate::math::order;
-use content::{Spot, content};
+use content::content;
+use insertion::Insertion;
 
 /// The defaults of a class: one prototype per kind of element.
 #[derive(Clone, Default)]
@@ -45,7 +47,7 @@ struct Class {
 }
 
 impl Class {
-    /// Takes over an element; returns what is wrong with it.
+    /// Applies an element. An error describes the fault.
     fn apply(&mut self, e: &Element) -> Result<(), &'static str> {
         match e.name {
             "joint" => self.joint.apply(e),
@@ -137,11 +139,11 @@ impl<'t> Classes<'t> {
     }
 }
 
-/// The document and the models that it names, with their elements.
-struct Parts<'t> {
+/// The document and the models that it includes by `<asset><model>`, with their elements.
+struct Sources<'t> {
     tree: &'t Tree,
     roots: Vec<Element>,
-    /// The place in the tree's list of models of that which an element names.
+    /// The index in the tree's list of models, by the element that names the model.
     named: BTreeMap<usize, usize>,
 }
 
@@ -155,7 +157,7 @@ pub(super) fn read(tree: &Tree) -> Result<Document, LoadError> {
         schema::check(tree, model.root, &elements::MUJOCO)
     };
     let models = tree.models();
-    let parts = Parts {
+    let parts = Sources {
         tree,
         roots: models.iter().map(root).collect::<Result<_, _>>()?,
         named: order::map(models.iter().enumerate().map(|(index, model)| (model.of, index))),
@@ -172,7 +174,7 @@ pub(super) fn read(tree: &Tree) -> Result<Document, LoadError> {
 }
 
 /// Reads the document, or a model that it names. Recursion is bounded by the limit on models within models.
-fn read_model(parts: &Parts, index: usize) -> Result<Document, LoadError> {
+fn read_model(parts: &Sources, index: usize) -> Result<Document, LoadError> {
     let (tree, root) = (parts.tree, &parts.roots[index]);
     let mut document = Document::new(root.at, Root::read(root).model);
     let mut classes = Classes {
@@ -226,9 +228,9 @@ fn read_model(parts: &Parts, index: usize) -> Result<Document, LoadError> {
             add_model(parts, index, model, &mut document)?;
         }
     }
-    // as in MuJoCo, what comes with bodies of other models follows the document's own
+    // as in MuJoCo, elements of attached models follow the document's own
     for section in sections("worldbody") {
-        content(section, Spot::WORLD, MAIN, &classes, &mut document)?;
+        content(section, Insertion::WORLD, MAIN, &classes, &mut document)?;
     }
     document.visual = visual.compiled();
     attach::check_absent(tree, &document)?;
@@ -236,7 +238,7 @@ fn read_model(parts: &Parts, index: usize) -> Result<Document, LoadError> {
 }
 
 /// Adds a model that `<attach>` may take bodies of.
-fn add_model(parts: &Parts, index: usize, e: &Element, document: &mut Document) -> Result<(), LoadError> {
+fn add_model(parts: &Sources, index: usize, e: &Element, document: &mut Document) -> Result<(), LoadError> {
     let model = read_model(parts, index)?;
     let given = ModelAsset::read(e).name;
     let name = if given.is_empty() { model.model.clone() } else { given };

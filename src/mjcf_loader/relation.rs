@@ -1,13 +1,13 @@
-//! Tables of what refers to bodies, joints, geoms and sites: contact, equalities, tendons.
+//! Tables of elements that refer to bodies, joints, geoms and sites: contact, equalities, tendons.
 
 use crate::math::Vec3;
 
 use super::attribute::Sign::{Any, NonNegative, Positive};
-use super::attribute::{FLAG, Kind, RANGE, Store, TEXT, Value, int, real, reals, some};
+use super::attribute::{AttributeField, FLAG, Kind, RANGE, TEXT, Value, int, real, reals, some};
 use super::error::UNREAD;
 use super::schema::Element;
 use super::table::{Table, table};
-use super::words::{GREY, MAX_GROUP, SOLIMP, SOLREF, TRI, Tri};
+use super::words::{AutoBool, GREY, MAX_GROUP, SOLIMP, SOLREF, TRI};
 
 table! {
     /// `<pair>`.
@@ -53,7 +53,7 @@ table! {
 }
 
 table! {
-    /// What a connection or a weld holds together: two bodies, or two sites.
+    /// The two bodies or sites that a connection or a weld holds together.
     group Ends {
         "body1" body1: Option<String> = None, TEXT, own, "First body.";
         "body2" body2: Option<String> = None, TEXT, own, "Second body; else the world.";
@@ -93,7 +93,7 @@ table! {
 }
 
 impl Equality {
-    /// Reads the element with what it holds; returns what is wrong with it.
+    /// Reads the element with the elements that it holds. An error describes the fault.
     pub fn hold(&mut self, e: &Element) -> Result<(), &'static str> {
         self.apply(e);
         self.held = match e.name {
@@ -137,16 +137,16 @@ table! {
     }
 }
 
-/// The elements that a tendon runs along, by name.
+/// The elements on the path of a tendon, by name.
 #[derive(Clone)]
-pub(super) enum Along {
+pub(super) enum TendonElements {
     Joint(TendonJoint),
     Site(TendonSite),
     Geom(TendonGeom),
     Pulley(Pulley),
 }
 
-impl Along {
+impl TendonElements {
     fn read(e: &Element) -> Result<Self, &'static str> {
         Ok(match e.name {
             "site" => Self::Site(TendonSite::read(e)),
@@ -177,7 +177,7 @@ impl SpringLength {
     pub const AT_REST: Self = Self([-1.0; 2]);
 }
 
-impl Store for SpringLength {
+impl AttributeField for SpringLength {
     /// Stores both lengths; a single one is both.
     fn store(&mut self, value: &Value) {
         if let Value::Reals(lengths) = value {
@@ -196,11 +196,11 @@ impl Store for SpringLength {
 table! {
     /// Attributes of `<tendon><fixed>` and `<tendon><spatial>`.
     element Tendon {
-        also path: Vec<Along> = Vec::new();
+        also path: Vec<TendonElements> = Vec::new();
         also spatial: bool = false;
         also looks: TendonLooks = TendonLooks::initial();
         "name" name: String = String::new(), TEXT, own, "Name.";
-        "limited" limited: Tri = Tri::Auto, TRI, "Whether the limit is enforced.";
+        "limited" limited: AutoBool = AutoBool::Auto, TRI, "Whether the limit is enforced.";
         "range" range: [f64; 2] = [0.0; 2], RANGE, "Shortest and longest length.";
         "margin" margin: f64 = 0.0, real(NonNegative), "Distance to the limit at which it becomes active.";
         "solreflimit" solref_limit: [f64; 2] = SOLREF, some(1, 2, Any), "`solref` of the limit.";
@@ -226,20 +226,20 @@ table! {
 }
 
 impl Tendon {
-    /// Reads the element, `<fixed>`, `<spatial>` or a default, without what it runs along.
+    /// Reads the element, `<fixed>`, `<spatial>` or a default, without its path.
     pub fn string(&mut self, e: &Element) {
         self.apply(e);
         self.looks.apply(e);
     }
 
-    /// Reads what it runs along; returns what is wrong with it.
+    /// Reads its path. An error describes the fault.
     pub fn thread(&mut self, e: &Element) -> Result<(), &'static str> {
         self.spatial = match e.name {
             "fixed" => false,
             "spatial" => true,
             _ => return Err(UNREAD),
         };
-        self.path = e.children.iter().map(Along::read).collect::<Result<_, _>>()?;
+        self.path = e.children.iter().map(TendonElements::read).collect::<Result<_, _>>()?;
         Ok(())
     }
 }

@@ -1,8 +1,8 @@
 //! Checks a tree against the elements and attributes that are understood.
 
-use super::attribute::{Attr, Rivals, Value};
+use super::attribute::{Alternatives, Attr, Value};
 use super::error::{ErrorKind, LoadError};
-use super::later::{self, Later};
+use super::later::{self, LaterAttribute};
 use super::xml::{Node, Tree};
 
 /// The content allowed in an element: the attributes of its tables, and child elements.
@@ -90,7 +90,7 @@ fn once(parent: &str, child: &str) -> bool {
 
 const FLEX: &str = "deformable bodies are not simulated here: make them of bodies and joints, or leave them out";
 
-/// Tells what to do about an element of 3.3.0 that is not supported.
+/// Returns the error for an element of 3.3.0 that is not supported, with advice.
 fn unsupported(node: &Node) -> Option<ErrorKind> {
     let name = match node.name.as_str() {
         "plugin" => node.attribute("plugin").unwrap_or_default().to_owned(),
@@ -139,16 +139,17 @@ fn meant<'a>(
     if let Some(attr) = find(name) {
         return Ok(Some((attr, text)));
     }
-    match later::attribute(rule, name, text) {
-        Some(Later::Nothing) => Ok(None),
-        Some(Later::As(other, _)) if node.attributes.iter().any(|(given, _)| given == other) => {
+    let has = |attribute: &str| rule.attributes().any(|attr| attr.name == attribute);
+    match later::attribute(rule.name, has, name, text) {
+        Some(LaterAttribute::Nothing) => Ok(None),
+        Some(LaterAttribute::As(other, _)) if node.attributes.iter().any(|(given, _)| given == other) => {
             Err(ErrorKind::DuplicateAttribute(other.to_owned()))
         }
-        Some(Later::As(other, text)) => match find(other) {
+        Some(LaterAttribute::As(other, text)) => match find(other) {
             Some(attr) => Ok(Some((attr, text))),
             None => Err(ErrorKind::UnknownAttribute(name.to_owned())),
         },
-        Some(Later::Refused) => Err(ErrorKind::LaterAttribute(name.to_owned())),
+        Some(LaterAttribute::Refused) => Err(ErrorKind::LaterAttribute(name.to_owned())),
         None => Err(ErrorKind::UnknownAttribute(name.to_owned())),
     }
 }
@@ -174,7 +175,7 @@ fn check_one(tree: &Tree, at: usize, rule: &'static Rule, class: bool) -> Result
         ));
         rivals.extend(attr.rivals.map(|rivals| (rivals, attr.name)));
     }
-    for group in Rivals::ALL {
+    for group in Alternatives::ALL {
         let mut given = rivals.iter().filter(|(rivals, _)| *rivals == group);
         if let (Some((_, first)), Some((_, second))) = (given.next(), given.next()) {
             return Err(tree.error(at, ErrorKind::Conflict(first, second)));

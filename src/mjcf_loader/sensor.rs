@@ -1,16 +1,16 @@
-//! Tables of sensors: what all have, and what each kind refers to.
+//! Tables of sensors: attributes of all sensors, and the objects of each kind.
 
 use crate::model::{DataType, ObjType, SensorType};
 
 use super::attribute::Sign::NonNegative;
-use super::attribute::{Attr, Kind, TEXT, Words, int, real, words};
+use super::attribute::{Groups, Keywords, Kind, TEXT, int, real, words};
 use super::error::UNREAD;
 use super::schema::Element;
 use super::table::{Table, table};
 
 /// A kind of object that has a frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum FrameOf {
+pub(super) enum FrameObject {
     Body,
     XBody,
     Geom,
@@ -18,12 +18,12 @@ pub(super) enum FrameOf {
     Camera,
 }
 
-const FRAMES: Words<FrameOf> = words! {
-    "body" => FrameOf::Body,
-    "xbody" => FrameOf::XBody,
-    "geom" => FrameOf::Geom,
-    "site" => FrameOf::Site,
-    "camera" => FrameOf::Camera,
+const FRAMES: Keywords<FrameObject> = words! {
+    "body" => FrameObject::Body,
+    "xbody" => FrameObject::XBody,
+    "geom" => FrameObject::Geom,
+    "site" => FrameObject::Site,
+    "camera" => FrameObject::Camera,
 };
 
 table! {
@@ -76,7 +76,7 @@ table! {
 table! {
     /// The object of a sensor of a frame, and its reference.
     group OfFrame {
-        "objtype" objtype: FrameOf = FrameOf::Body, FRAMES, required, "Kind of the object; `body` for the frame of its centre of mass, `xbody` for its own.";
+        "objtype" objtype: FrameObject = FrameObject::Body, FRAMES, required, "Kind of the object; `body` for the frame of its centre of mass, `xbody` for its own.";
         "objname" objname: String = String::new(), TEXT, required, "Name of the object.";
     }
 }
@@ -84,7 +84,7 @@ table! {
 table! {
     /// In which frame a sensor of a frame measures.
     group InFrame {
-        "reftype" reftype: Option<FrameOf> = None, FRAMES, "Kind of the object in whose frame it measures; else in that of the world.";
+        "reftype" reftype: Option<FrameObject> = None, FRAMES, "Kind of the object in whose frame it measures; else in that of the world.";
         "refname" refname: Option<String> = None, TEXT, "Name of that object.";
     }
 }
@@ -111,9 +111,9 @@ table! {
 const MAX_USER: i64 = 1000;
 
 /// Stages of a step, by MuJoCo's numbers.
-const STAGES: Words<usize> = words! { "none" => 0, "pos" => 1, "vel" => 2, "acc" => 3 };
+const STAGES: Keywords<usize> = words! { "none" => 0, "pos" => 1, "vel" => 2, "acc" => 3 };
 
-const DATA: Words<DataType> = words! {
+const DATA: Keywords<DataType> = words! {
     "real" => DataType::Real,
     "positive" => DataType::Positive,
     "axis" => DataType::Axis,
@@ -121,7 +121,7 @@ const DATA: Words<DataType> = words! {
 };
 
 /// Kinds of objects that a sensor of a program's own may name.
-const OBJECTS: Words<ObjType> = words! {
+const OBJECTS: Keywords<ObjType> = words! {
     "body" => ObjType::Body,
     "xbody" => ObjType::XBody,
     "joint" => ObjType::Joint,
@@ -158,9 +158,6 @@ pub(super) enum Object {
     User(OfUser),
 }
 
-/// The groups of attributes of a table.
-type Groups = &'static [&'static [Attr]];
-
 /// Returns the tables of a kind of sensor, its own attributes first.
 pub(super) const fn tables(kind: SensorType) -> &'static [Groups] {
     use SensorType::*;
@@ -188,7 +185,7 @@ pub(super) const fn tables(kind: SensorType) -> &'static [Groups] {
 }
 
 impl Sensor {
-    /// Reads a sensor of any kind; its attributes tell what it refers to. Returns what is wrong with it.
+    /// Reads a sensor of any kind with the objects that it refers to. An error describes the fault.
     pub fn of(e: &Element) -> Result<Self, &'static str> {
         let named = |attribute: &str| e.text(attribute).map(str::to_owned);
         let kind = SensorType::ALL.iter().find(|kind| kind.name() == e.name).copied();

@@ -1,14 +1,14 @@
-//! Tables of what concerns the whole document: compiler, options, sizes, visual settings, statistics.
+//! Tables of settings of the whole document: compiler, options, sizes, visual settings, statistics.
 
 use crate::math::Vec3;
 use crate::model::{self, ConeType, Flags, IntegratorType, JacobianFormat, Options, SolverType, Statistic};
 
 use super::attribute::Sign::{Any, NonNegative, Positive};
-use super::attribute::{FLAG, INTS, Kind, TEXT, Words, int, real, reals, some, words};
+use super::attribute::{FLAG, INTS, Keywords, Kind, TEXT, int, real, reals, some, words};
 use super::error::UNREAD;
 use super::schema::Element;
 use super::table::{Table, table};
-use super::words::{MAX_COUNT, MAX_KEYS, MAX_PIXELS, TRI, Tri};
+use super::words::{AutoBool, MAX_COUNT, MAX_KEYS, MAX_PIXELS, TRI};
 
 table! {
     /// `<mujoco>`.
@@ -22,7 +22,7 @@ table! {
     group Compiler {
         "angle" degree: bool = true, words! { "radian" => false, "degree" => true }, "Unit of angles in the document.";
         "eulerseq" eulerseq: [u8; 3] = *b"xyz", Kind::EulerSeq, "Axes of Euler angles; lower case turns with the body.";
-        "inertiafromgeom" inertiafromgeom: Tri = Tri::Auto, TRI, "Whether inertia is inferred from geoms; `auto`: only where a body has no `inertial`.";
+        "inertiafromgeom" inertiafromgeom: AutoBool = AutoBool::Auto, TRI, "Whether inertia is inferred from geoms; `auto`: only where a body has no `inertial`.";
         "autolimits" autolimits: bool = true, FLAG, "Whether giving a range enables its limit.";
         "inertiagrouprange" inertiagrouprange: [f64; 2] = [0.0, 5.0], INTS, "Lowest and highest group of the geoms from which inertia is inferred.";
         "balanceinertia" balanceinertia: bool = false, FLAG, "Whether principal moments that no body can have are replaced by their mean.";
@@ -56,15 +56,15 @@ pub enum LengthRangeMode {
     All,
 }
 
-/// Muscles, or muscles and what programs define, of which there is nothing here.
-const LENGTH_RANGES: Words<LengthRangeMode> = words! {
+/// Muscles and user-defined actuators. This engine has none of the latter.
+const LENGTH_RANGES: Keywords<LengthRangeMode> = words! {
     "none" => LengthRangeMode::None,
     "muscle" => LengthRangeMode::Muscle,
     "muscleuser" => LengthRangeMode::Muscle,
     "all" => LengthRangeMode::All,
 };
 
-/// How the `lengthrange` of actuators is found that do not give it.
+/// Settings for the simulation that finds the `lengthrange` of actuators without one (`<compiler><lengthrange>`).
 #[derive(Clone, Copy, Debug)]
 pub struct LengthRange {
     /// Which actuators get their `lengthrange`.
@@ -104,7 +104,7 @@ table! {
     }
 }
 
-const INTEGRATORS: Words<IntegratorType> = words! {
+const INTEGRATORS: Keywords<IntegratorType> = words! {
     "Euler" => IntegratorType::Euler,
     "RK4" => IntegratorType::Rk4,
     "implicit" => IntegratorType::Implicit,
@@ -143,7 +143,7 @@ table! {
 }
 
 /// The words of a flag.
-const SWITCH: Words<bool> = words! { "enable" => true, "disable" => false };
+const SWITCH: Keywords<bool> = words! { "enable" => true, "disable" => false };
 
 table! {
     fields Flags {
@@ -239,14 +239,14 @@ table! {
 }
 
 table! {
-    /// `<visual><rgba>`: colours of what only MuJoCo's viewer draws. Renderers and physics know nothing of them.
+    /// `<visual><rgba>`: colours of decorations in MuJoCo's viewer. Renderers and physics ignore them.
     group Rgba {
         check "fog" | "haze" | "force" | "inertia" | "joint" | "actuator" | "actuatornegative" | "actuatorpositive" | "com" | "camera" | "light" | "selectpoint" | "connect" | "contactpoint" | "contactforce" | "contactfriction" | "contacttorque" | "contactgap" | "rangefinder" | "constraint" | "slidercrank" | "crankbroken" | "frustum" | "bv" | "bvactive", reals(4, Any), "Colour in MuJoCo's viewer. Ignored: it is not drawn.";
     }
 }
 
 table! {
-    /// `<visual><scale>`: sizes of what only MuJoCo's viewer draws.
+    /// `<visual><scale>`: sizes of decorations in MuJoCo's viewer.
     group Scale {
         check "forcewidth" | "contactwidth" | "contactheight" | "connect" | "com" | "camera" | "light" | "selectpoint" | "jointlength" | "jointwidth" | "actuatorlength" | "actuatorwidth" | "framelength" | "framewidth" | "constraint" | "slidercrank" | "frustum", real(Any), "Size in MuJoCo's viewer. Ignored: it is not drawn.";
     }
@@ -268,7 +268,7 @@ impl Size {
     /// Reads a section; those behind it win.
     ///
     /// # Errors
-    /// It says in two ways how much memory MuJoCo takes.
+    /// It sets MuJoCo's memory in two ways.
     pub fn section(&mut self, e: &Element) -> Result<(), &'static str> {
         (self.njmax, self.nstack) = (None, None);
         self.apply(e);
@@ -301,14 +301,14 @@ pub(super) struct Visual {
 }
 
 impl Visual {
-    /// Takes over an element of the section; returns what is wrong with it.
+    /// Applies an element of the section. An error describes the fault.
     pub fn apply(&mut self, e: &Element) -> Result<(), &'static str> {
         match e.name {
             "global" => self.global.apply(e),
             "map" => self.map.apply(e),
             "quality" => self.quality.apply(e),
             "headlight" => self.headlight.apply(e),
-            // colours and sizes of what is not drawn
+            // colours and sizes of decorations that are not drawn
             "rgba" | "scale" => {}
             _ => return Err(UNREAD),
         }

@@ -22,7 +22,7 @@ table! {
     }
 }
 
-/// What a limit on the elements of skins counts.
+/// The name of the elements that a limit on skins counts.
 pub(super) const SKIN_ELEMENTS: &str = "vertices, texture coordinates, faces and weights of skins";
 
 impl Skin {

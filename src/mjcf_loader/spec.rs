@@ -13,13 +13,13 @@ use crate::model::Arrays;
 #[derive(Clone, Debug)]
 pub struct Spec {
     pub(super) arrays: Arrays,
-    pub(super) places: Places,
+    pub(super) places: Locations,
     pub(super) lengthrange: LengthRange,
 }
 
-/// The places of the elements in their document.
+/// The locations of the elements in their document.
 #[derive(Clone, Debug)]
-pub struct Places {
+pub struct Locations {
     pub(super) tree: Tree,
     /// The body elements (nbody), the root for the world.
     pub(super) bodies: Vec<usize>,
@@ -29,8 +29,8 @@ pub struct Places {
     pub(super) actuators: Vec<usize>,
 }
 
-impl Places {
-    /// Returns an error at a body; the world stands for the whole document.
+impl Locations {
+    /// Returns an error at a body; for the world, an error of the whole document.
     pub fn body_error(&self, body: usize, message: &'static str) -> LoadError {
         self.tree.error(self.bodies[body], ErrorKind::Invalid(message))
     }
@@ -90,7 +90,7 @@ impl Spec {
     }
 
     /// Returns the arrays, without the constants that need dynamics, the places of the elements, and how lengths of actuators are found.
-    pub fn into_parts(self) -> (Arrays, Places, LengthRange) {
+    pub fn into_parts(self) -> (Arrays, Locations, LengthRange) {
         (self.arrays, self.places, self.lengthrange)
     }
 }

@@ -3,7 +3,7 @@
 use crate::model::{Builtin, Mark, TextureType};
 
 use super::attribute::Sign::{Any, NonNegative, Positive, Unit};
-use super::attribute::{FLAG, TEXT, Words, int, real, reals, words};
+use super::attribute::{FLAG, Keywords, TEXT, int, real, reals, words};
 use super::schema::Element;
 use super::table::{Table, table};
 use super::words::{BUILTINS, MARKS, MAX_PIXELS, TEXTURES};
@@ -41,8 +41,8 @@ table! {
 /// The role of the layer that MuJoCo's own renderer draws.
 const DRAWN: &str = "rgb";
 
-/// What a layer is for.
-const ROLES: Words<&str> = words! {
+/// The role of a layer.
+const ROLES: Keywords<&str> = words! {
     "rgb" => DRAWN,
     "occlusion" => "occlusion",
     "roughness" => "roughness",
@@ -63,7 +63,7 @@ table! {
 }
 
 impl Material {
-    /// Reads the element with its layers, of which the last one of colours is its texture.
+    /// Reads the element with its layers. The last layer of colours is its texture.
     pub fn look(&mut self, e: &Element) {
         self.apply(e);
         self.layers = e.children.iter().map(Layer::read).collect();

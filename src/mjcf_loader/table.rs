@@ -17,19 +17,19 @@
 //! allowed in default classes), `required`, `orientation`, `inertia` or `transmission` (an element may have one of those so marked).
 //! `element` makes a struct that also keeps its place in the text, `at`; `group` makes a struct without; `fields` fills a struct that is declared elsewhere.
 
-use super::attribute::{Attr, Visit};
+use super::attribute::{Attr, FieldVisitor};
 use super::schema::Element;
 
-/// A struct that attributes fill.
+/// A struct whose fields are the attributes of an element.
 pub(super) trait Table: Sized {
     /// The attributes, those of the table itself first. Of two with one name the first counts.
     const ATTRIBUTES: &'static [&'static [Attr]];
 
-    /// Returns what holds when no attribute is given.
+    /// Returns the values of attributes that are not given.
     fn initial() -> Self;
 
     /// Visits the field that an attribute fills, if it has one; returns whether the table has the attribute.
-    fn field(&mut self, name: &str, visit: Visit) -> bool;
+    fn field(&mut self, name: &str, visit: FieldVisitor) -> bool;
 
     /// Returns how a document would write the default of an attribute.
     fn default_of(name: &str) -> String {
@@ -41,7 +41,7 @@ pub(super) trait Table: Sized {
     /// Stores the place in the text.
     fn locate(&mut self, _at: usize) {}
 
-    /// Stores the place and the attributes of an element. What the element does not give stays.
+    /// Stores the place and the attributes of an element. Other fields keep their values.
     fn apply(&mut self, e: &Element) {
         self.locate(e.at);
         for (name, value) in e.values() {
@@ -126,7 +126,7 @@ macro_rules! table {
                 }
             }
 
-            fn field(&mut self, name: &str, visit: $crate::attribute::Visit) -> bool {
+            fn field(&mut self, name: &str, visit: $crate::attribute::FieldVisitor) -> bool {
                 let _ = &visit;
                 match name {
                     $($set => $set_form.visit(&mut self.$to $(.$sub)* $([$k])?, visit),)*

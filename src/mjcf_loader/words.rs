@@ -4,7 +4,7 @@ use crate::math::Vec3;
 use crate::model::{BiasType, Builtin, CamLight, DynType, GainType, GeomType, JointType, Mark, TextureType};
 
 use super::attribute::Sign::Any;
-use super::attribute::{Kind, Store, Value, Visit, Words, reals, words};
+use super::attribute::{AttributeField, FieldVisitor, Keywords, Kind, Value, reals, words};
 use super::table::table;
 
 pub(super) const SOLREF: [f64; 2] = [0.02, 1.0];
@@ -15,7 +15,7 @@ pub(super) const GREY: [f64; 4] = [0.5, 0.5, 0.5, 1.0];
 pub(super) const MAX_GROUP: i64 = i32::MAX as i64;
 /// Greatest group of a skin.
 pub(super) const MAX_SKIN_GROUP: i64 = 5;
-/// Bits of collision, the highest of which is the sign.
+/// Bits of collision. The highest is the sign.
 pub(super) const MIN_BITS: i64 = i32::MIN as i64;
 pub(super) const MAX_BITS: i64 = i32::MAX as i64;
 /// The greatest number of keyframes that a document may ask for without giving them.
@@ -23,23 +23,24 @@ pub(super) const MAX_KEYS: i64 = 10_000;
 pub(super) const MAX_COUNT: i64 = 1 << 30;
 pub(super) const MAX_PIXELS: i64 = 16384;
 
-/// A switch that may follow from whether a range is given.
+/// A switch with the value `auto`, which is on if a range is given.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Tri {
+pub(super) enum AutoBool {
     No,
     Yes,
     Auto,
 }
 
-pub(super) const TRI: Words<Tri> = words! { "false" => Tri::No, "true" => Tri::Yes, "auto" => Tri::Auto };
-pub(super) const JOINTS: Words<JointType> = words! {
+pub(super) const TRI: Keywords<AutoBool> =
+    words! { "false" => AutoBool::No, "true" => AutoBool::Yes, "auto" => AutoBool::Auto };
+pub(super) const JOINTS: Keywords<JointType> = words! {
     "free" => JointType::Free,
     "ball" => JointType::Ball,
     "slide" => JointType::Slide,
     "hinge" => JointType::Hinge,
 };
-pub(super) const FLUID: Words<bool> = words! { "none" => false, "ellipsoid" => true };
-pub(super) const SHAPES: Words<GeomType> = words! {
+pub(super) const FLUID: Keywords<bool> = words! { "none" => false, "ellipsoid" => true };
+pub(super) const SHAPES: Keywords<GeomType> = words! {
     "plane" => GeomType::Plane,
     "hfield" => GeomType::HField,
     "sphere" => GeomType::Sphere,
@@ -50,31 +51,31 @@ pub(super) const SHAPES: Words<GeomType> = words! {
     "mesh" => GeomType::Mesh,
 };
 /// The shapes of sites, which are neither planes nor height fields nor meshes.
-pub(super) const SITE_SHAPES: Words<GeomType> = words! {
+pub(super) const SITE_SHAPES: Keywords<GeomType> = words! {
     "sphere" => GeomType::Sphere,
     "capsule" => GeomType::Capsule,
     "ellipsoid" => GeomType::Ellipsoid,
     "cylinder" => GeomType::Cylinder,
     "box" => GeomType::Box,
 };
-pub(super) const TEXTURES: Words<TextureType> = words! {
+pub(super) const TEXTURES: Keywords<TextureType> = words! {
     "2d" => TextureType::Flat2d,
     "cube" => TextureType::Cube,
     "skybox" => TextureType::Skybox,
 };
-pub(super) const BUILTINS: Words<Builtin> = words! {
+pub(super) const BUILTINS: Keywords<Builtin> = words! {
     "none" => Builtin::None,
     "gradient" => Builtin::Gradient,
     "checker" => Builtin::Checker,
     "flat" => Builtin::Flat,
 };
-pub(super) const MARKS: Words<Mark> = words! {
+pub(super) const MARKS: Keywords<Mark> = words! {
     "none" => Mark::None,
     "edge" => Mark::Edge,
     "cross" => Mark::Cross,
     "random" => Mark::Random,
 };
-pub(super) const CAM_LIGHT: Words<CamLight> = words! {
+pub(super) const CAM_LIGHT: Keywords<CamLight> = words! {
     "fixed" => CamLight::Fixed,
     "track" => CamLight::Track,
     "trackcom" => CamLight::TrackCom,
@@ -82,19 +83,19 @@ pub(super) const CAM_LIGHT: Words<CamLight> = words! {
     "targetbodycom" => CamLight::TargetBodyCom,
 };
 
-pub(super) const DYNAMICS: Words<DynType> = words! {
+pub(super) const DYNAMICS: Keywords<DynType> = words! {
     "none" => DynType::None,
     "integrator" => DynType::Integrator,
     "filter" => DynType::Filter,
     "filterexact" => DynType::FilterExact,
     "muscle" => DynType::Muscle,
 };
-pub(super) const GAINS: Words<GainType> =
+pub(super) const GAINS: Keywords<GainType> =
     words! { "fixed" => GainType::Fixed, "affine" => GainType::Affine, "muscle" => GainType::Muscle };
-pub(super) const BIASES: Words<BiasType> =
+pub(super) const BIASES: Keywords<BiasType> =
     words! { "none" => BiasType::None, "affine" => BiasType::Affine, "muscle" => BiasType::Muscle };
 
-/// An orientation as written.
+/// An orientation as the document gives it.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Orientation {
     Quat([f64; 4]),
@@ -131,7 +132,7 @@ impl<const N: usize> Rotation<N> {
         self.kind
     }
 
-    fn visit(self, field: &mut Orientation, visit: Visit) {
+    fn visit(self, field: &mut Orientation, visit: FieldVisitor) {
         visit(&mut RotationField { rotation: self, field });
     }
 }
@@ -142,7 +143,7 @@ struct RotationField<'a, const N: usize> {
     field: &'a mut Orientation,
 }
 
-impl<const N: usize> Store for RotationField<'_, N> {
+impl<const N: usize> AttributeField for RotationField<'_, N> {
     fn store(&mut self, value: &Value) {
         if let Value::Reals(values) = value
             && let Ok(values) = values[..].try_into()

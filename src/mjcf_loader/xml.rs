@@ -6,7 +6,7 @@ mod parser;
 use std::borrow::Cow;
 use std::collections::BTreeSet;
 
-use super::error::{ErrorKind, LoadError, Place};
+use super::error::{ErrorKind, LoadError, Location};
 use crate::assets::{AssetError, AssetSource, directory, is_absolute};
 use crate::limits::Limits;
 use crate::math::order;
@@ -59,7 +59,7 @@ pub struct ModelFile {
     pub root: usize,
     /// The folder of its file.
     pub dir: String,
-    /// The place of what names it in the list of models.
+    /// Index of the model that names it.
     pub within: Option<usize>,
     first: usize,
     path: String,
@@ -68,7 +68,7 @@ pub struct ModelFile {
 impl Tree {
     /// Reads the main document and everything it includes. Returns the tree and its root.
     pub fn read(text: &str, path: &str, source: &dyn AssetSource, limits: &Limits) -> Result<(Tree, usize), LoadError> {
-        let mut reading = Reading {
+        let mut reading = FileReader {
             tree: Tree {
                 nodes: Vec::new(),
                 limits: limits.clone(),
@@ -82,6 +82,7 @@ impl Tree {
         };
         let root = reading.model(text, path, None)?;
         let mut model = 0;
+        // models may name further models, which are appended to this list
         while model < reading.tree.models.len() {
             reading.models_of(model)?;
             model += 1;
@@ -94,8 +95,9 @@ impl Tree {
         &self.models
     }
 
-    /// Returns the place in the list of models of that which an element belongs to; 0 for the document.
+    /// Returns the index of the model that an element belongs to; 0 for the document.
     pub fn model_of(&self, at: usize) -> usize {
+        // each model is read at once, so its elements are consecutive
         self.models.partition_point(|model| model.first <= at).saturating_sub(1)
     }
 
@@ -112,7 +114,7 @@ impl Tree {
         &self.files
     }
 
-    /// Returns the path of a file that an element names, which stands in a folder of its model.
+    /// Returns the path of a file that an element names, in a folder of its model.
     ///
     /// As in MuJoCo 3.3.0, an element of an included file finds it beside that file, unless it is where MuJoCo looks for it at first:
     /// in the folder `probed`, if there is one.
@@ -148,9 +150,9 @@ impl Tree {
     }
 
     /// Returns the place of an element.
-    pub fn place(&self, at: usize) -> Place {
+    pub fn place(&self, at: usize) -> Location {
         let Some(node) = self.nodes.get(at) else {
-            return Place::default();
+            return Location::default();
         };
         let mut names = vec![node.name.as_str()];
         let mut up = node.parent;
@@ -159,7 +161,7 @@ impl Tree {
             up = parent.parent;
         }
         names.reverse();
-        Place {
+        Location {
             file: self.files[node.file].clone(),
             line: node.line,
             column: node.column,
@@ -221,11 +223,12 @@ fn indent(out: &mut String, depth: usize) {
     out.extend(std::iter::repeat_n("  ", depth));
 }
 
-/// Returns the text of a file: UTF-8, or Latin-1 where it says so.
+/// Returns the text of a file: UTF-8, or Latin-1 if its XML declaration names that.
 pub(super) fn text_of(bytes: &[u8]) -> Result<Cow<'_, str>, ErrorKind> {
     if let Ok(text) = std::str::from_utf8(bytes) {
         return Ok(text.into());
     }
+    // the declaration alone, which is ASCII in either encoding: the text may well contain these words
     let declaration: Vec<u8> = bytes
         .iter()
         .take(100)
@@ -243,7 +246,7 @@ pub(super) fn text_of(bytes: &[u8]) -> Result<Cow<'_, str>, ErrorKind> {
     }
 }
 
-struct Reading<'s> {
+struct FileReader<'s> {
     tree: Tree,
     source: &'s dyn AssetSource,
     dir: String,
@@ -251,7 +254,7 @@ struct Reading<'s> {
     bytes: usize,
 }
 
-impl Reading<'_> {
+impl FileReader<'_> {
     /// Reads the document, or a model with the element that names it.
     fn model(&mut self, text: &str, path: &str, of: Option<usize>) -> Result<usize, LoadError> {
         let first = self.tree.nodes.len();
@@ -296,11 +299,12 @@ impl Reading<'_> {
             let what = "a model is an MJCF document: its file ends with .xml, or content_type is text/xml";
             return Err(self.tree.error(at, ErrorKind::Invalid(what)));
         }
-        // unlike other files, one that an included file names stands beside that file, and nowhere else
+        // MuJoCo looks for models of an included file beside that file only, unlike for other files
         let path = self
             .source
             .resolve(directory(self.tree.file(at)), file)
             .map_err(|e| self.tree.error(at, e))?;
+        // a model that names itself, over others or not, would be read without end
         let (mut around, mut depth) = (Some(within), 1);
         while let Some(model) = around {
             if self.tree.models[model].path == path {
@@ -318,8 +322,9 @@ impl Reading<'_> {
         self.model(&text, &path, Some(at)).map(|_| ())
     }
 
-    /// Parses one file and splices its includes. `depth` is the nesting depth of the element it stands for.
+    /// Parses a file and the files that it includes. `depth` is the nesting depth of the element that it replaces.
     fn file(&mut self, text: &str, path: &str, depth: usize, level: usize) -> Result<usize, LoadError> {
+        // in total: files within files multiply
         self.bytes = self.bytes.saturating_add(text.len());
         if self.bytes > self.tree.limits.document_bytes {
             let kind = ErrorKind::TooMuch {
@@ -344,7 +349,7 @@ impl Reading<'_> {
         Ok(root)
     }
 
-    /// Replaces the includes among the children of an element by the children of the roots they name.
+    /// Replaces the includes among the children of an element by the children of the included roots.
     fn splice(&mut self, at: usize, level: usize) -> Result<(), LoadError> {
         let mut children = Vec::new();
         for child in std::mem::take(&mut self.tree.nodes[at].children) {
@@ -391,7 +396,7 @@ impl Reading<'_> {
         let text = text_of(&bytes).map_err(|kind| LoadError::in_file(&path, kind))?;
         self.included.insert(path.clone());
         let root = self.file(&text, &path, depth, level)?;
-        // The root of an included file only holds its children; what else it says would be lost.
+        // only the children of the root are included, so its attributes would be lost
         match self.tree.nodes[root]
             .attributes
             .iter()

@@ -1,4 +1,4 @@
-//! The types of actuators: what they act on, and how their force follows.
+//! The types of actuators: transmission, activation dynamics, gain and bias.
 
 /// The target of an actuator: `actuator_trnid` is its id (MuJoCo's `mjtTrn`).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]

@@ -302,7 +302,7 @@ arrays! {
 
     /// Lights (nlight): MuJoCo's arrays `light_*`, one value for each light.
     lights: Vec<Light>,
-    /// Textures (ntex): what MuJoCo's arrays `tex_*` are made from, one recipe for each texture.
+    /// Textures (ntex): one recipe for each texture, from which MuJoCo's arrays `tex_*` are made.
     textures: Vec<Texture>,
     /// Materials (nmat): MuJoCo's arrays `mat_*`, one value for each material.
     materials: Vec<Material>,

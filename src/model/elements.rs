@@ -63,7 +63,7 @@ pub enum GeomType {
     Cylinder,
     /// `size` is the half lengths.
     Box,
-    /// A triangle mesh, of which the convex hull touches; `size` is the largest distance from its centre along each axis.
+    /// A triangle mesh, whose convex hull collides; `size` is the largest distance from its centre along each axis.
     Mesh,
 }
 
@@ -104,7 +104,7 @@ impl SameFrame {
     }
 }
 
-/// An equality constraint, with what it holds.
+/// An equality constraint, with the elements that it holds.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum EqualityKind {
     /// `y - y0 = polycoef(x - x0)` with `y` the first joint and `x` the second; without a second joint `y - y0 = polycoef[0]`.
@@ -228,7 +228,7 @@ pub enum Wrap {
         /// Length of the tendon per coordinate.
         coef: f64,
     },
-    /// A pulley: what follows counts divided by `divisor` in the length.
+    /// A pulley: the length of the path behind it is divided by `divisor`.
     Pulley {
         /// The divisor, which is positive.
         divisor: f64,
@@ -252,17 +252,6 @@ pub enum Wrap {
         /// The site on whose side the tendon stays.
         side: Option<usize>,
     },
-}
-
-impl Wrap {
-    /// Returns the body of a site or a geom.
-    pub fn body(&self, model: &super::Arrays) -> Option<usize> {
-        match *self {
-            Self::Site { site } => Some(model.site_bodyid[site]),
-            Self::Sphere { geom, .. } | Self::Cylinder { geom, .. } => Some(model.geom_bodyid[geom]),
-            Self::Joint { .. } | Self::Pulley { .. } => None,
-        }
-    }
 }
 
 /// A state that a document names (`<keyframe><key>`).

@@ -4,7 +4,7 @@ const KIB: u64 = 1 << 10;
 const MIB: u64 = KIB << 10;
 const GIB: u64 = MIB << 10;
 
-/// Defines the limits, each with its default, of which its documentation tells.
+/// Defines the limits, each with its default and its documentation.
 macro_rules! limits {
     ($(#[$about:meta])* $name:ident { $($(#[$doc:meta])* $field:ident: $type:ty = $default:expr,)* }) => {
         $(#[$about])*
@@ -25,7 +25,7 @@ macro_rules! limits {
 }
 
 limits! {
-    /// Bounds what readers take from untrusted input, so that no text or file exhausts the memory or the stack.
+    /// Bounds on untrusted input, so that no text or file exhausts the memory or the stack.
     ///
     /// Every reader has a function that takes limits; the shorter one beside it uses [`Limits::default`]. Exceeding a limit is
     /// an error of the reader that names the limit. Fields may be added in later versions, so start from the default:

@@ -126,7 +126,7 @@ impl MeshPolygons {
     }
 }
 
-/// Returns what belongs to one of those whose beginnings stand in `adr`; nothing of one that is not there.
+/// Returns the slice of item `index`; `adr` has the start of each. An index out of range gives an empty slice.
 #[inline(always)]
 fn slice<'a>(adr: &[u32], all: &'a [u32], of: usize) -> &'a [u32] {
     match (adr.get(of), adr.get(of + 1)) {

@@ -80,6 +80,17 @@ sizes! {
     nskin skins "skins",
 }
 
+impl Wrap {
+    /// Returns the body of a site or a geom.
+    pub fn body(&self, model: &Arrays) -> Option<usize> {
+        match *self {
+            Self::Site { site } => Some(model.site_bodyid[site]),
+            Self::Sphere { geom, .. } | Self::Cylinder { geom, .. } => Some(model.geom_bodyid[geom]),
+            Self::Joint { .. } | Self::Pulley { .. } => None,
+        }
+    }
+}
+
 impl Arrays {
     /// Tells whether a tendon is spatial, its length one in space.
     pub fn tendon_is_spatial(&self, tendon: usize) -> bool {
@@ -93,7 +104,7 @@ impl Arrays {
         self.opt.flags.sensor && self.sensor_type.iter().any(reads)
     }
 
-    /// Returns the number of what all tendons run along.
+    /// Returns the number of elements on the paths of all tendons.
     pub fn nwrap(&self) -> usize {
         self.tendon_wrap.iter().map(Vec::len).sum()
     }
@@ -139,7 +150,7 @@ impl Arrays {
         self.nmocap
     }
 
-    /// Tells whether a body may move in the world: by joints, or because a program moves it or what it is fixed to.
+    /// Tells whether a body may move in the world: by joints, or because a program moves it or a body that it is fixed to.
     pub fn moves(&self, body: usize) -> bool {
         self.body_weldid[body] != 0 || self.body_mocapid[self.body_rootid[body]].is_some()
     }

@@ -14,7 +14,7 @@ pub enum ConeType {
 
 /// The format of the constraint Jacobian in MuJoCo (`<option jacobian>`).
 ///
-/// Ours has one format. What the choice still decides is which equalities without any effect MuJoCo keeps.
+/// This engine has one format. The choice still decides which equalities without any effect MuJoCo keeps.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
 pub enum JacobianFormat {
     /// Dense matrices.

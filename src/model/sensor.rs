@@ -1,4 +1,4 @@
-//! Types of sensors: what each measures, of which kind of object, in how many numbers.
+//! Types of sensors, with the kind of their objects and the number of their values.
 
 /// Defines the types of sensors, with MuJoCo's number of each, the name of its element, and how many numbers it gives of which
 /// kind.

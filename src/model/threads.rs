@@ -161,7 +161,7 @@ impl<J: Job> ThreadPool<J> {
         let mut queues = self.shared.lock();
         queues.jobs.extend(jobs);
         queues.active = queues.threads.saturating_sub(usize::from(help));
-        // relaxed, as the lock orders it; whoever spins on it only wants to know when to take the lock
+        // relaxed, as the lock orders it; a spinning thread only needs to know when to take the lock
         self.shared.handed.fetch_add(1, Ordering::Relaxed);
         drop(queues);
         if !self.workers.is_empty() {
@@ -191,7 +191,7 @@ impl<J: Job> ThreadPool<J> {
         }
     }
 
-    /// Returns the next finished job, of which at least one must be under way; the caller helps.
+    /// Returns the next finished job. At least one must be under way. The caller helps.
     pub fn wait_next(&self) -> Box<J> {
         loop {
             // empty-handed only if nothing were under way
@@ -296,11 +296,11 @@ mod tests {
 
     #[test]
     fn threads_end_with_the_pool() {
-        struct Nothing;
-        impl Job for Nothing {
+        struct EmptyJob;
+        impl Job for EmptyJob {
             fn run(&mut self) {}
         }
-        let pool = ThreadPool::<Nothing>::new(3, 4).expect("threads");
+        let pool = ThreadPool::<EmptyJob>::new(3, 4).expect("threads");
         assert_eq!(pool.workers.len(), if PARALLEL { 3 } else { 0 });
         // each thread holds what it shares with the pool as long as it lives
         let alive = Arc::downgrade(&pool.shared);

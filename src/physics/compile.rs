@@ -2,7 +2,7 @@
 
 use crate::dynamics::{MAX_WEIGHT, constants};
 use crate::length_range;
-use crate::mjcf_loader::{LoadError, Places, Spec};
+use crate::mjcf_loader::{LoadError, Locations, Spec};
 use crate::model::{Arrays, BiasType, Constants, GainType, JointType, Model, SameFrame, SolverType};
 
 const NO_ACCELERATION: &str =
@@ -72,7 +72,7 @@ fn redundant(arrays: &Arrays) -> Option<usize> {
 }
 
 /// Refuses constants that are not finite, or that a singular inertia leaves to rounding errors.
-fn check(arrays: &Arrays, constants: &Constants, places: &Places) -> Result<(), LoadError> {
+fn check(arrays: &Arrays, constants: &Constants, places: &Locations) -> Result<(), LoadError> {
     if let Some(body) = redundant(arrays) {
         return Err(places.body_error(body, REDUNDANT));
     }

@@ -2,10 +2,8 @@
 
 use std::sync::Arc;
 
-use thiserror::Error;
-
 use crate::MAXVAL;
-use crate::collision::PairTable;
+use crate::error::EngineError;
 use crate::model::Model;
 use crate::state::{Contact, State};
 use crate::table::length;
@@ -23,7 +21,6 @@ use crate::topology::Topology;
 /// use mjcf_sim::assets::MemoryAssets;
 /// use mjcf_sim::mjcf_loader::load_str;
 /// use mjcf_sim::Model;
-/// use mjcf_sim::physics::collision::PairTable;
 /// use mjcf_sim::physics::{Engine, EngineError, Probe, SoftEngine, SoftOptions, State, Topology, compile};
 ///
 /// /// Limits the speed of every degree of freedom, rad/s or m/s.
@@ -38,9 +35,6 @@ use crate::topology::Topology;
 ///     }
 ///     fn topology(&self) -> &Topology {
 ///         self.inner.topology()
-///     }
-///     fn pairs(&self) -> &PairTable {
-///         self.inner.pairs()
 ///     }
 ///     fn forward(&mut self, state: &mut State) -> Result<(), EngineError> {
 ///         self.inner.forward(state)
@@ -74,13 +68,10 @@ pub trait Engine: Send + Sync {
     /// Returns the compiled scene.
     fn model(&self) -> &Arc<Model>;
 
-    /// Returns what the engine derived from the tree of the model.
+    /// Returns the structure of the model's tree, which the engine derived once.
     fn topology(&self) -> &Topology;
 
-    /// Returns the geom pairs that may touch, in contact order.
-    fn pairs(&self) -> &PairTable;
-
-    /// Returns a state at `qpos0`, at rest, of which nothing has been computed.
+    /// Returns a state at `qpos0`, at rest. Computed quantities are zero until [`Engine::forward`] or [`Engine::step`].
     #[doc(alias("mj_makeData", "mj_resetData"))]
     fn new_state(&self) -> State {
         State::new(self.model(), self.topology())
@@ -105,7 +96,7 @@ pub trait Engine: Send + Sync {
     }
 
     /// Sets time, positions, velocities, activations, controls and mocap poses of a state to those of keyframe `key` of the model, and
-    /// everything else that decides how a run goes on to what it is in a new state: forces, warm start and parameters.
+    /// all other dynamic fields (forces, warm start, parameters) to those of a new state.
     ///
     /// ```
     /// use mjcf_sim::assets::MemoryAssets;
@@ -162,7 +153,7 @@ pub trait Engine: Send + Sync {
     #[doc(alias = "mj_step")]
     fn step(&mut self, state: &mut State) -> Result<(), EngineError>;
 
-    /// Installs or removes a probe that is told when each stage of a step begins, and when the step is done.
+    /// Installs or removes a probe, which is called when each stage of a step begins and when the step is done.
     fn set_probe(&mut self, probe: Option<Probe>);
 }
 
@@ -215,135 +206,8 @@ impl Stage {
 /// clock.
 pub type Probe = Box<dyn FnMut(Option<Stage>) + Send + Sync>;
 
-/// An error in advancing a state.
-#[derive(Clone, Debug, Error, PartialEq)]
-#[non_exhaustive]
-pub enum EngineError {
-    /// A vector of the state does not fit the model.
-    #[error("state.{what} has {found} values but the model needs {expected}: build states with Engine::new_state")]
-    Shape {
-        /// Field.
-        what: &'static str,
-        /// Length found.
-        found: usize,
-        /// Length needed.
-        expected: usize,
-    },
-    /// A number given to the engine is not finite.
-    #[error("state.{what}[{index}] is {value}: only finite numbers can be simulated")]
-    NotFinite {
-        /// Field.
-        what: &'static str,
-        /// Position in the field.
-        index: usize,
-        /// The number.
-        value: f64,
-    },
-    /// A force is applied to a body that does not exist.
-    #[error("there is no body {body}; the model has {count}, numbered from 0")]
-    NoBody {
-        /// Body asked for, by id.
-        body: usize,
-        /// Number of bodies.
-        count: usize,
-    },
-    /// A keyframe that does not exist is asked for.
-    #[error("there is no keyframe {key}; the model has {count}, numbered from 0")]
-    NoKeyframe {
-        /// Keyframe asked for.
-        key: usize,
-        /// Number of keyframes.
-        count: usize,
-    },
-    /// The mass or the size of a body that something holds cannot change.
-    #[error(
-        "the body {body:?} is not free: mass, inertia and size can change for bodies of the world with a free joint that carry \
-         no other body"
-    )]
-    NotFree {
-        /// Name of the body.
-        body: String,
-    },
-    /// A body without geoms has no size.
-    #[error("the body {body:?} has no geom whose size could change")]
-    NoGeom {
-        /// Name of the body.
-        body: String,
-    },
-    /// A mass, an inertia or a size is not a positive number.
-    #[error("{what}[{index}] is {value}: it must be finite and > 0")]
-    NotPositive {
-        /// Quantity.
-        what: &'static str,
-        /// Position in it.
-        index: usize,
-        /// The number.
-        value: f64,
-    },
-    /// An engine has the parameters of the model built in.
-    #[error("the engine cannot change params.{what}: use engine: soft")]
-    FixedParameter {
-        /// Field of the parameters.
-        what: &'static str,
-    },
-    /// A force applied to a body is not finite.
-    #[error("{what}[{index}] is {value}: only finite forces, torques and points can be applied")]
-    Applied {
-        /// Vector at fault.
-        what: &'static str,
-        /// Position in it.
-        index: usize,
-        /// The number.
-        value: f64,
-    },
-    /// More at once than a step may take.
-    #[error("more than {limit} {what} in step {step}: place the bodies apart, or let fewer of them touch")]
-    TooMany {
-        /// Steps done before.
-        step: u64,
-        /// The kind of item that exceeds the limit.
-        what: &'static str,
-        /// The limit, of [`mjcf_sim_model::Limits`].
-        limit: usize,
-    },
-    /// The simulation diverged.
-    #[error(
-        "the simulation diverged in step {step} at joint {joint:?} ({what} = {value:e}): reset the environment, and use \
-         smaller actions, forces or time steps"
-    )]
-    Diverged {
-        /// Steps done before.
-        step: u64,
-        /// Joint whose coordinate is out of bounds.
-        joint: String,
-        /// Quantity.
-        what: &'static str,
-        /// Its value.
-        value: f64,
-    },
-    /// The simulation diverged in a contact, though positions, velocities and accelerations still are numbers.
-    #[error(
-        "the simulation diverged in step {step} where the geoms {} and {} touch (position or force is not a finite number): \
-         make sizes, masses or speeds smaller", .geoms[0], .geoms[1]
-    )]
-    DivergedContact {
-        /// Steps done before.
-        step: u64,
-        /// Names of the geoms, in quotes; the number of one without a name.
-        geoms: [String; 2],
-    },
-}
-
-/// Checks a number against its limit.
-pub(super) fn within(limit: usize, found: usize, what: &'static str, step: u64) -> Result<(), EngineError> {
-    if found > limit {
-        Err(EngineError::TooMany { step, what, limit })
-    } else {
-        Ok(())
-    }
-}
-
-/// Checks the sizes of all that a step reads and writes, and that what it reads is finite.
+/// Checks the lengths of all vectors of a state, and that those that a step reads are finite.
+#[doc(alias("mj_checkPos", "mj_checkVel"))]
 pub fn check_input(m: &Model, topology: &Topology, s: &State) -> Result<(), EngineError> {
     check_shape(m, topology, s)?;
     s.finite()?;
@@ -360,6 +224,7 @@ fn check_shape(m: &Model, topology: &Topology, s: &State) -> Result<(), EngineEr
 }
 
 /// Reports the coordinate that left the bounds by most: positions first, as they drag the rest along.
+#[doc(alias = "mj_checkAcc")]
 pub fn check_output(model: &Model, s: &State) -> Result<(), EngineError> {
     check_bounds(model, s, &[("qpos", &s.qpos), ("qvel", &s.qvel), ("qacc", &s.qacc)])
 }

@@ -1,6 +1,6 @@
 //! Another mass, inertia and size for a body that nothing holds.
 
-use crate::engine::EngineError;
+use crate::error::EngineError;
 use crate::math::{Vec3, column, cross, dot, quat_to_mat};
 use crate::mjcf_loader::bounding_radius;
 use crate::model::{GeomType, JointType, Model};
@@ -106,7 +106,7 @@ impl State {
         Ok(())
     }
 
-    /// Changes mass and inertia of a free body, and what follows from them.
+    /// Changes mass and inertia of a free body, and the parameters that depend on them.
     fn weigh(&mut self, model: &Model, body: usize, mass: f64, inertia: Vec3) {
         let p = &mut *self.params;
         (p.body_mass[body], p.body_inertia[body]) = (mass, inertia);

@@ -2,11 +2,11 @@
 
 use std::sync::Arc;
 
-use crate::dynamics::once::{com_pos, crb, kinematics, solve, update};
-use crate::dynamics::{Articulated, Composite, dense_moment, tendons, transmissions};
+use crate::dynamics::stages::{com_pos, crb, kinematics, solve, update};
+use crate::dynamics::{Articulated, CompositeInertia, dense_moment, tendons, transmissions};
 use crate::engine::Engine;
 use crate::math::MINVAL;
-use crate::mjcf_loader::{LengthRange, LengthRangeMode, LoadError, Places};
+use crate::mjcf_loader::{LengthRange, LengthRangeMode, LoadError, Locations};
 use crate::model::{BiasType, GainType, IntegratorType, Model, TrnType};
 use crate::soft::{SoftEngine, SoftOptions};
 use crate::state::State;
@@ -24,7 +24,8 @@ const LONG: &str = "the simulation that looks for its lengthrange has too many s
 ///
 /// # Errors
 /// Lengths that do not come to rest, or do not change.
-pub(super) fn complete(model: Model, settings: &LengthRange, places: &Places) -> Result<Model, LoadError> {
+#[doc(alias = "mj_setLengthRange")]
+pub(super) fn complete(model: Model, settings: &LengthRange, places: &Locations) -> Result<Model, LoadError> {
     let asked: Vec<usize> = (0..model.nu()).filter(|&i| is_asked(&model, settings, i)).collect();
     if asked.is_empty() {
         return Ok(model);
@@ -38,7 +39,7 @@ pub(super) fn complete(model: Model, settings: &LengthRange, places: &Places) ->
             ranges[i] = range;
             continue;
         }
-        let search = search.get_or_insert_with(|| Search::new(&model, settings));
+        let search = search.get_or_insert_with(|| LengthRangeSimulation::new(&model, settings));
         steps += 2.0 * settings.inttotal / search.engine.model().opt.timestep;
         if steps > limit as f64 {
             return Err(places.actuator_error(i, LONG));
@@ -77,17 +78,17 @@ fn own_limit(model: &Model, i: usize) -> Option<[f64; 2]> {
     (limited.get(id) == Some(&true)).then(|| ranges[id])
 }
 
-/// The simulation.
-struct Search<'a> {
+/// The simulation that finds the shortest and longest length of an actuator.
+struct LengthRangeSimulation<'a> {
     settings: &'a LengthRange,
     engine: SoftEngine,
-    composite: Composite,
+    composite: CompositeInertia,
     bodies: Articulated,
     moment: Vec<f64>,
     response: Vec<f64>,
 }
 
-impl<'a> Search<'a> {
+impl<'a> LengthRangeSimulation<'a> {
     fn new(model: &Model, settings: &'a LengthRange) -> Self {
         let model = model.with_options(|opt| {
             // whatever the document says, these are on and those are off
@@ -122,7 +123,7 @@ impl<'a> Search<'a> {
         let nv = model.nv;
         Self {
             settings,
-            composite: Composite::default(),
+            composite: CompositeInertia::default(),
             bodies: Articulated::new(&model),
             engine: SoftEngine::new(Arc::new(model), SoftOptions::default()),
             moment: vec![0.0; nv],

@@ -2,27 +2,83 @@
 
 use std::ops::Range;
 
+use crate::MAXVAL;
+use crate::error::EngineError;
 use crate::math::*;
 use crate::model::{GeomType, HField, Mesh, Model};
 use crate::state::State;
+use crate::table::length;
 
-/// Returns the nearest geom that a ray meets, and its distance in lengths of `direction`, leaving out the geoms of one body and
-/// those that are invisible (MuJoCo's `mj_ray`).
+/// A geom that a ray meets.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RayHit {
+    /// The geom, by id.
+    pub geom: usize,
+    /// Distance from the origin of the ray, in lengths of its direction: m for a unit vector.
+    pub distance: f64,
+}
+
+/// Returns the first geom that a ray meets from `origin` (m) along `direction`, both in the world frame: MuJoCo's `mj_ray`.
+///
+/// Geoms are where the last [`step`](crate::Engine::step) or [`forward`](crate::Engine::forward) of the state has placed them. As in MuJoCo,
+/// invisible geoms are left out (those with an opacity of 0), planes are seen from above only, and a ray that starts inside a geom meets it
+/// where it leaves. `without_body` leaves out the geoms of one body, for example that of the sensor. Nothing is met along a direction of
+/// zeros, or with numbers that are not finite or beyond 1e10.
+///
+/// ```
+/// use mjcf_sim::assets::MemoryAssets;
+/// use mjcf_sim::physics::{Engine, SoftEngine, SoftOptions, compile, ray};
+///
+/// let text = "<mujoco><worldbody><geom type='plane' size='1 1 1'/><geom type='box' size='.1 .1 .1' pos='0 0 .3'/></worldbody></mujoco>";
+/// let model = compile(mjcf_sim::mjcf_loader::load_str(text, "boxes.xml", &MemoryAssets::new())?)?;
+/// let mut engine = SoftEngine::new(model.into(), SoftOptions::default());
+/// let mut state = engine.new_state();
+/// engine.forward(&mut state)?;
+/// let hit = ray(engine.model(), &state, [0.0, 0.0, 2.0], [0.0, 0.0, -1.0], None)?.ok_or("nothing is there")?;
+/// assert_eq!(hit.geom, 1);
+/// assert!((hit.distance - 1.6).abs() < 1e-12);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// # Errors
+/// The state is of another model.
+#[doc(alias = "mj_ray")]
+pub fn ray(
+    model: &Model,
+    state: &State,
+    origin: Vec3,
+    direction: Vec3,
+    without_body: Option<usize>,
+) -> Result<Option<RayHit>, EngineError> {
+    let expected = model.ngeom();
+    length("geom_xpos", state.geom_xpos.len(), expected)?;
+    length("geom_xmat", state.geom_xmat.len(), expected)?;
+    length("params.geom_size", state.params.geom_size.len(), expected)?;
+    length("params.geom_rbound", state.params.geom_rbound.len(), expected)?;
+    // squares of greater numbers may overflow; NaN fails the comparison, too
+    let usable = |v: Vec3| v.iter().all(|x| x.abs() <= MAXVAL);
+    if !usable(origin) || !usable(direction) || dot(direction, direction) < MINVAL {
+        return Ok(None);
+    }
+    Ok(nearest_geom(model, state, origin, direction, without_body))
+}
+
+/// Returns the nearest visible geom that a ray meets, leaving out the geoms of one body.
 pub(super) fn nearest_geom(
     model: &Model,
     s: &State,
     origin: Vec3,
     direction: Vec3,
-    without_body: usize,
-) -> Option<(usize, f64)> {
-    let mut nearest: Option<(usize, f64)> = None;
+    without_body: Option<usize>,
+) -> Option<RayHit> {
+    let mut nearest: Option<RayHit> = None;
     for g in 0..model.ngeom() {
         // a material decides alone, whatever the geom's own opacity
         let opacity = match model.geom_matid[g] {
             Some(material) => model.materials[material].rgba[3],
             None => model.geom_rgba[g][3],
         };
-        if model.geom_bodyid[g] == without_body || opacity == 0.0 {
+        if Some(model.geom_bodyid[g]) == without_body || opacity == 0.0 {
             continue;
         }
         let (pos, mat, size) = (s.geom_xpos[g], &s.geom_xmat[g], s.params.geom_size[g]);
@@ -40,15 +96,16 @@ pub(super) fn nearest_geom(
             _ => ray_shape(model.geom_type[g], size, pos, mat, origin, direction),
         };
         if let Some(distance) = found
-            && nearest.is_none_or(|(_, least)| distance < least)
+            && nearest.is_none_or(|least| distance < least.distance)
         {
-            nearest = Some((g, distance));
+            nearest = Some(RayHit { geom: g, distance });
         }
     }
     nearest
 }
 
 /// Returns the distance at which a ray meets a shape, in lengths of `direction`; from inside, that at which it leaves.
+#[doc(alias = "mju_rayGeom")]
 pub(super) fn ray_shape(
     kind: GeomType,
     size: Vec3,
@@ -119,7 +176,7 @@ fn ray_hfield(fields: &[HField], (p, v): (Vec3, Vec3)) -> Option<f64> {
         }
     }
     let steps = [2.0 * x / (field.ncol - 1) as f64, 2.0 * y / (field.nrow - 1) as f64];
-    let over = OverField {
+    let over = HeightFieldRay {
         field,
         fields,
         p,
@@ -132,7 +189,7 @@ fn ray_hfield(fields: &[HField], (p, v): (Vec3, Vec3)) -> Option<f64> {
 }
 
 /// A ray over the grid of a height field, in the frame of the field.
-struct OverField<'a> {
+struct HeightFieldRay<'a> {
     field: &'a HField,
     /// The field and those that follow it.
     fields: &'a [HField],
@@ -142,7 +199,7 @@ struct OverField<'a> {
     steps: [f64; 2],
 }
 
-impl OverField<'_> {
+impl HeightFieldRay<'_> {
     /// Returns the column (`k` = 0) or row (1) over which the ray is at a distance.
     fn place(&self, k: usize, at: f64) -> f64 {
         (self.p[k] + at * self.v[k] + self.field.size[k]) / self.steps[k]

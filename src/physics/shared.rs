@@ -9,7 +9,7 @@ use crate::table::Row;
 /// A value that copies share until one of them is written to, which then has its own: [`State::params`](crate::State::params).
 ///
 /// It is read and written like the value itself. A value of one's own stays one's own: copies into it ([`Clone::clone_from`]) keep its memory, so that
-/// whoever writes again and again allocates once.
+/// repeated writes allocate once.
 #[derive(Default)]
 pub struct Shared<T>(Arc<T>);
 

@@ -3,12 +3,11 @@
 use std::sync::Arc;
 
 use crate::collision::{PairTable, Sweep, contact_options};
-use crate::constraint::{Dual, Newton, RowBuilder, contact_forces};
+use crate::constraint::{DualSolver, NewtonSolver, RowBuilder, contact_forces};
 use crate::contact::Quirks;
 use crate::dynamics::*;
-use crate::engine::{
-    Engine, EngineError, Probe, Stage, check_contacts, check_evaluation, check_input, check_motion, check_output,
-};
+use crate::engine::{Engine, Probe, Stage, check_contacts, check_evaluation, check_input, check_motion, check_output};
+use crate::error::EngineError;
 use crate::model::{IntegratorType, Model, SolverType};
 use crate::state::{RESERVED_CONTACTS, State};
 use crate::topology::Topology;
@@ -43,15 +42,15 @@ pub struct SoftEngine {
     pairs: Arc<PairTable>,
     sweep: Sweep,
     rows: RowBuilder,
-    newton: Newton,
-    dual: Dual,
+    newton: NewtonSolver,
+    dual: DualSolver,
     integrator: Integrator,
     stages: RungeKutta,
     sensor_scratch: SensorScratch,
-    composite: Composite,
+    composite: CompositeInertia,
     bias: BiasScratch,
     bodies: Articulated,
-    /// Whether what follows from accelerations and constraint forces is computed.
+    /// Whether `cacc`, `cfrc_ext` and `cfrc_int` are computed.
     post_constraint: bool,
     probe: Option<Probe>,
 }
@@ -92,12 +91,12 @@ impl SoftModel {
             options: self.options,
             sweep: Sweep::new(model, pairs, contact),
             rows: RowBuilder::new(model, topology),
-            newton: Newton::with_capacity(topology, model.nv, RESERVED_CONTACTS),
-            dual: Dual::default(),
+            newton: NewtonSolver::with_capacity(topology, model.nv, RESERVED_CONTACTS),
+            dual: DualSolver::default(),
             integrator: Integrator::default(),
             stages: RungeKutta::default(),
             sensor_scratch: SensorScratch::default(),
-            composite: Composite::default(),
+            composite: CompositeInertia::default(),
             bias: BiasScratch::default(),
             bodies: Articulated::new(model),
             post_constraint: self.options.post_constraint || model.reads_accelerations(),
@@ -124,6 +123,7 @@ impl SoftEngine {
     }
 
     /// Computes the position stage: poses, inertia, contacts, constraint rows.
+    #[doc(alias = "mj_fwdPosition")]
     fn fwd_position(&mut self, s: &mut State) -> Result<(), EngineError> {
         self.mark(Some(Stage::Kinematics));
         vectorized!({
@@ -147,7 +147,8 @@ impl SoftEngine {
         Ok(())
     }
 
-    /// Computes everything, with or without what sensors read.
+    /// Computes everything. `senses` adds body accelerations, wrenches and sensors.
+    #[doc(alias = "mj_forwardSkip")]
     // everything hot is inlined into it, so there must be one of it only
     #[inline(never)]
     fn compute(&mut self, s: &mut State, senses: bool) -> Result<(), EngineError> {
@@ -182,7 +183,7 @@ impl SoftEngine {
         Ok(())
     }
 
-    /// Computes everything, and refuses what shows that the simulation diverged.
+    /// Computes everything, and checks that the simulation has not diverged.
     fn compute_checked(&mut self, s: &mut State) -> Result<(), EngineError> {
         self.compute(s, true)?;
         check_output(&self.model, s)?;
@@ -197,10 +198,6 @@ impl Engine for SoftEngine {
 
     fn topology(&self) -> &Topology {
         &self.topology
-    }
-
-    fn pairs(&self) -> &PairTable {
-        &self.pairs
     }
 
     fn forward(&mut self, state: &mut State) -> Result<(), EngineError> {

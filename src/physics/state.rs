@@ -1,7 +1,7 @@
 //! Everything about a scene that changes while it runs.
 
 use crate::constraint::{Efc, EfcRow};
-use crate::engine::EngineError;
+use crate::error::EngineError;
 use crate::math::{MAT3_ID, Mat3, QUAT_ID, Quat, Vec3, add, cross, sub};
 use crate::model::Arrays;
 use crate::params::Params;

@@ -17,7 +17,7 @@
 //!
 //! A row that `dynamic` gains, loses or moves changes the bytes of snapshots: their `VERSION` goes up with it.
 
-use crate::engine::EngineError;
+use crate::error::EngineError;
 
 /// A row, or a struct of rows, as snapshots see it: its numbers and flags, in order.
 pub trait Row {

@@ -1,10 +1,13 @@
 //! The structure of a model's tree, derived once for the dynamics: ancestor chains, trees, the layout of the inertia.
 
-use crate::dof_rows::{self, DofRows};
 use crate::model::Arrays;
-use crate::params::Params;
-use crate::tendon_paths::TendonPaths;
 use crate::tiles::{Lanes, Pattern, Tile, ZERO};
+
+mod dof_rows;
+pub(crate) mod tendon_paths;
+
+use dof_rows::DofRows;
+use tendon_paths::TendonPaths;
 
 /// The structure of the tree of a [`mjcf_sim_model::Model`], derived for the dynamics: ancestor chains, trees, the layout of matrices.
 ///
@@ -146,10 +149,11 @@ impl Topology {
         &self.body_tiles[self.body_tile_adr[body]..self.body_tile_adr[body + 1]]
     }
 
-    /// Returns the trace of a tree's inverse inertia at `qpos0`, a bound on its acceleration under unit forces.
+    /// Returns the sum of `dof_invweight0` (nv) over a tree: the trace of its inverse inertia at `qpos0`, a bound on its acceleration under unit
+    /// forces.
     #[inline]
-    pub fn mobility(&self, params: &Params, tree: usize) -> f64 {
-        params.dof_invweight0[self.tree_adr[tree]..self.tree_adr[tree + 1]]
+    pub fn mobility(&self, dof_invweight0: &[f64], tree: usize) -> f64 {
+        dof_invweight0[self.tree_adr[tree]..self.tree_adr[tree + 1]]
             .iter()
             .sum()
     }

@@ -2,7 +2,7 @@
 
 use crate::math::{MAT3_ID, Mat3, Vec3};
 use crate::model::{GeomType, Model, Skin};
-use crate::scenery::single;
+use crate::single::single;
 use crate::texture::TexturePixels;
 use crate::view::Poses;
 

@@ -5,7 +5,7 @@
 use std::f64::consts::PI;
 
 use super::patch::Patch;
-use super::strip::{STRIP_LANES, Strip};
+use super::strip::{LANES, STRIP_LANES, Strip};
 
 const SLICES: usize = 28;
 const STACKS: usize = 16;
@@ -23,9 +23,6 @@ pub enum MeshPart {
     /// The lower cap of a capsule, z from -1 to -2.
     Bottom,
 }
-
-/// Number of vertices of which the length of each band is a multiple.
-pub const LANES: usize = 8;
 
 /// The most vertices of a mesh: triangles count them in 16 bits, and a mesh is filled up to whole groups.
 pub(super) const MOST: usize = (1 << 16) - LANES;
@@ -81,7 +78,7 @@ const ALONG: [(usize, u16); 4] = [(0, 0), (0, 1), (1, 1), (1, 0)];
 /// The same, from the lower row to the upper one and back.
 const ACROSS: [(usize, u16); 4] = [(0, 0), (1, 0), (1, 1), (0, 1)];
 
-pub(super) type Point = ([f32; 3], [f32; 3]);
+pub(super) type MeshPoint = ([f32; 3], [f32; 3]);
 
 impl Mesh {
     /// Returns the part that a vertex belongs to.
@@ -90,7 +87,7 @@ impl Mesh {
     }
 
     /// Returns the index of a vertex of the current band, after adding it if it is new.
-    fn vertex(&mut self, (p, n): Point) -> u16 {
+    fn vertex(&mut self, (p, n): MeshPoint) -> u16 {
         let first = self.bands.last().map_or(0, |band| band.vertices.start);
         let known = (first..self.x.len()).rev().find(|&i| {
             // vertices are shared only if light and place are the same to the bit, so that sharing never shows
@@ -106,7 +103,7 @@ impl Mesh {
         }) as u16
     }
 
-    pub(super) fn push(&mut self, ([x, y, z], normal): Point) {
+    pub(super) fn push(&mut self, ([x, y, z], normal): MeshPoint) {
         self.x.push(x);
         self.y.push(y);
         self.z.push(z);
@@ -174,7 +171,7 @@ impl Mesh {
     }
 
     /// Adds the vertices of a row that are new; returns the first. They stand one after the other.
-    fn row(&mut self, count: usize, at: impl Fn(usize) -> Point) -> u16 {
+    fn row(&mut self, count: usize, at: impl Fn(usize) -> MeshPoint) -> u16 {
         let first = self.vertex(at(0));
         for j in 1..=count {
             self.vertex(at(j));
@@ -185,7 +182,13 @@ impl Mesh {
     /// Adds quadrilaterals between two rows of vertices, `at(column, row)`, split along the diagonal that Mesa chooses.
     /// `corners` are the rows and columns of those of the first; they are in the opposite order if it does not face
     /// outward.
-    fn strip(&mut self, count: usize, outward: bool, corners: [(usize, u16); 4], at: impl Fn(usize, usize) -> Point) {
+    fn strip(
+        &mut self,
+        count: usize,
+        outward: bool,
+        corners: [(usize, u16); 4],
+        at: impl Fn(usize, usize) -> MeshPoint,
+    ) {
         let rows = [0, 1].map(|k| self.row(count, |j| at(j, k)));
         let mut first = corners.map(|(row, column)| rows[row] + column);
         if !outward {
@@ -201,7 +204,7 @@ impl Mesh {
     }
 
     /// Adds triangles between a row of vertices and a point.
-    fn fan(&mut self, count: usize, outward: bool, at: impl Fn(usize) -> Point, point: Point) {
+    fn fan(&mut self, count: usize, outward: bool, at: impl Fn(usize) -> MeshPoint, point: MeshPoint) {
         let row = self.row(count, at);
         let point = self.vertex(point);
         let (first, step) = if outward {

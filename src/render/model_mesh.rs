@@ -17,7 +17,7 @@ pub struct ModelMeshes {
 }
 
 /// A corner of a triangle: vertex, normal to the bit, texture coordinates.
-type Corner = (u32, [u32; 3], u32);
+type MeshCorner = (u32, [u32; 3], u32);
 
 impl ModelMeshes {
     pub fn new(model: &Model) -> Self {
@@ -55,12 +55,12 @@ impl ModelMeshes {
 }
 
 /// A part of a mesh that is being made.
-struct Part {
+struct PartBuilder {
     mesh: Mesh,
-    known: BTreeMap<Corner, u16>,
+    known: BTreeMap<MeshCorner, u16>,
 }
 
-impl Part {
+impl PartBuilder {
     fn new() -> Self {
         let mut mesh = Mesh::default();
         mesh.band(MeshPart::Body);
@@ -81,10 +81,10 @@ impl Part {
 /// Makes the parts of a mesh. Faces that turn away from the normal of a vertex have their own there, unless the mesh has texture
 /// coordinates, as in MuJoCo.
 fn cut(source: &model::Mesh, meshes: &mut Vec<Mesh>) {
-    let mut part = Part::new();
+    let mut part = PartBuilder::new();
     for (f, face) in source.face.iter().enumerate() {
         if part.mesh.x.len() + 3 > MOST {
-            std::mem::replace(&mut part, Part::new()).finish(meshes);
+            std::mem::replace(&mut part, PartBuilder::new()).finish(meshes);
         }
         let places = face.map(|v| source.vert.get(v as usize).copied().unwrap_or_default());
         let flat = normal(places);
@@ -97,7 +97,7 @@ fn cut(source: &model::Mesh, meshes: &mut Vec<Mesh>) {
                 _ => flat,
             };
             let corner = (face[k], normal.map(f32::to_bits), coordinates);
-            let Part { mesh, known } = &mut part;
+            let PartBuilder { mesh, known } = &mut part;
             triangle[k] = *known.entry(corner).or_insert_with(|| {
                 mesh.push((places[k], normal));
                 if !source.texcoord.is_empty() {
@@ -119,10 +119,10 @@ const QUADS: usize = 4;
 fn cut_field(field: &HField, meshes: &mut Vec<Mesh>) {
     let [x, y, top, base] = field.size.map(|v| v as f32);
     let (rows, columns) = (field.nrow, field.ncol);
-    let mut part = Part::new();
+    let mut part = PartBuilder::new();
     let mut add = |corners: [[f32; 3]; 3], normal: [f32; 3]| {
         if part.mesh.x.len() + 3 > MOST {
-            std::mem::replace(&mut part, Part::new()).finish(meshes);
+            std::mem::replace(&mut part, PartBuilder::new()).finish(meshes);
         }
         let first = part.mesh.x.len() as u16;
         corners.iter().for_each(|&corner| part.mesh.push((corner, normal)));

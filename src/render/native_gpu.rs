@@ -12,7 +12,7 @@ pub type SharedGpu = Arc<Mutex<GpuRenderer>>;
 /// Opens a GPU for a scene.
 ///
 /// # Errors
-/// Fails where there is no GPU, or none that can draw the scene.
+/// No GPU was found, or it cannot draw the scene.
 pub fn open_gpu(scenery: Arc<Scenery>) -> Result<SharedGpu, RenderError> {
     Ok(Arc::new(Mutex::new(GpuRenderer::new(scenery)?)))
 }

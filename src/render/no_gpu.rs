@@ -5,11 +5,11 @@ use std::sync::Arc;
 
 use super::{ImageBuffers, RenderError, RenderRequest, Scenery};
 
-/// A renderer that cannot be: the library was built without one.
+/// A type without values: this build has no GPU renderer.
 #[derive(Debug)]
 pub enum NoGpu {}
 
-/// A renderer on a GPU that several environments share, of which there is none in this build.
+/// A GPU renderer that several environments share. This build has none.
 pub type SharedGpu = Arc<NoGpu>;
 
 /// Returns the reason why there is no GPU.

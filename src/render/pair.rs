@@ -9,21 +9,21 @@ use crate::threads::{Job, PARALLEL, ThreadPool};
 use crate::view::ImageBuffers;
 use crate::{CpuRenderer, Poses, RenderError, RenderRequest, Scenery, View};
 
-/// A thread that draws images, and the drawing it works on. The thread starts with the first pair of images.
+/// Draws two images at once, one of them on a thread of its own. The thread starts with the first pair of images.
 #[derive(Default)]
-pub struct Pair {
+pub struct PairRenderer {
     /// The drawing, while the thread does not have it.
-    drawing: Option<Box<Drawing>>,
-    thread: Option<Thread>,
+    drawing: Option<Box<DrawingJob>>,
+    thread: Option<DrawingThread>,
 }
 
-/// A thread, in the process that has it.
-struct Thread {
-    pool: ThreadPool<Drawing>,
+/// The thread, with the id of the process that started it.
+struct DrawingThread {
+    pool: ThreadPool<DrawingJob>,
     process: u32,
 }
 
-impl Pair {
+impl PairRenderer {
     /// Returns whether a second thread would help: the build has threads, and the machine another core.
     pub fn is_of_use() -> bool {
         PARALLEL && std::thread::available_parallelism().is_ok_and(|cores| cores.get() > 1)
@@ -42,11 +42,11 @@ impl Pair {
         let draw_first = || own.draw(scenery, &first.0.poses, &first.0.view, first.1);
         let mut drawing = match self.drawing.take() {
             Some(drawing) => drawing,
-            None => Box::new(Drawing::new(scenery)),
+            None => Box::new(DrawingJob::new(scenery)),
         };
         drawing.take_up(second.0, &second.1);
         let drawn = match self.thread() {
-            Some(Thread { pool, .. }) => {
+            Some(DrawingThread { pool, .. }) => {
                 pool.submit(std::iter::once(drawing), false);
                 // unwinding past the thread would lose the drawing that it holds
                 let drawn = catch_unwind(AssertUnwindSafe(draw_first));
@@ -80,14 +80,14 @@ impl Pair {
     }
 
     /// Returns the thread, starting it if need be. A forked process starts its own.
-    fn thread(&mut self) -> Option<&Thread> {
+    fn thread(&mut self) -> Option<&DrawingThread> {
         let process = std::process::id();
         if self.thread.as_ref().is_some_and(|thread| thread.process != process) {
             self.leave_behind();
         }
         if self.thread.is_none() {
             let pool = ThreadPool::of_one().ok()?;
-            self.thread = Some(Thread { pool, process });
+            self.thread = Some(DrawingThread { pool, process });
         }
         self.thread.as_ref()
     }
@@ -98,7 +98,7 @@ impl Pair {
     }
 }
 
-impl Drop for Pair {
+impl Drop for PairRenderer {
     fn drop(&mut self) {
         if self.thread.as_ref().is_some_and(|t| t.process != std::process::id()) {
             self.leave_behind();
@@ -106,14 +106,14 @@ impl Drop for Pair {
     }
 }
 
-impl std::fmt::Debug for Pair {
+impl std::fmt::Debug for PairRenderer {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.debug_struct("Pair").finish_non_exhaustive()
     }
 }
 
-/// An image to draw, in memory of its own.
-struct Drawing {
+/// The images of one view to draw, with their buffers.
+struct DrawingJob {
     scenery: Arc<Scenery>,
     renderer: CpuRenderer,
     poses: PosesBuffer,
@@ -127,7 +127,7 @@ struct Drawing {
     panicked: Mutex<Option<Box<dyn Any + Send>>>,
 }
 
-impl Drawing {
+impl DrawingJob {
     fn new(scenery: &Arc<Scenery>) -> Self {
         Self {
             scenery: scenery.clone(),
@@ -172,7 +172,7 @@ impl Drawing {
     }
 }
 
-impl Job for Drawing {
+impl Job for DrawingJob {
     fn run(&mut self) {
         let images = ImageBuffers {
             rgb: self.rgb.wanted(),
@@ -189,7 +189,7 @@ impl Job for Drawing {
     }
 }
 
-/// Memory of an image, which is wanted or not.
+/// The buffer of an image, and whether the image is wanted.
 #[derive(Default)]
 struct Image<T> {
     values: Vec<T>,

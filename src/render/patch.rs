@@ -1,7 +1,6 @@
 //! Parts of strips whose quadrilaterals are tested together by back-face culling.
 
-use super::mesh::LANES;
-use super::strip::{STRIP_LANES, Strip};
+use super::strip::{LANES, STRIP_LANES, Strip};
 
 /// The bits of all quadrilaterals of a patch.
 pub const ALL: u8 = 15;
@@ -47,10 +46,10 @@ impl Patch {
     }
 }
 
-type Plane = ([f64; 3], f64);
+type PatchPlane = ([f64; 3], f64);
 
 /// Returns the plane of a triangle: its normal, as long as the parallelogram is large, and the offset.
-fn plane(corners: [[f32; 3]; 3]) -> Plane {
+fn plane(corners: [[f32; 3]; 3]) -> PatchPlane {
     let [a, b, c] = corners.map(|v| v.map(f64::from));
     let minus = |p: [f64; 3], q: [f64; 3]| [p[0] - q[0], p[1] - q[1], p[2] - q[2]];
     let normal = crate::math::cross(minus(b, a), minus(c, a));
@@ -58,8 +57,8 @@ fn plane(corners: [[f32; 3]; 3]) -> Plane {
 }
 
 /// Returns the plane of the smaller of two triangles; the first if there is no other.
-fn smaller(first: Plane, second: Plane, alone: bool) -> Plane {
-    let area = |(n, _): Plane| crate::math::dot(n, n);
+fn smaller(first: PatchPlane, second: PatchPlane, alone: bool) -> PatchPlane {
+    let area = |(n, _): PatchPlane| crate::math::dot(n, n);
     if alone || area(first) <= area(second) {
         first
     } else {

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::gpu_of_build::{SharedGpu, draw_on, scenery_of};
-use super::pair::Pair;
+use super::pair::PairRenderer;
 use super::{CpuRenderer, ImageBuffers, RenderError, RenderRequest, Scenery};
 use crate::pool::Pool;
 
@@ -17,26 +17,26 @@ pub struct Renderer {
 #[derive(Debug)]
 enum Backend {
     Cpu {
-        memory: Memory,
+        memory: BufferSource,
         /// Passes over the scene's geometry by the caller's thread.
         passes: u64,
         /// The second thread, if there is one, which draws every second image.
-        pair: Option<Pair>,
+        pair: Option<PairRenderer>,
     },
     Gpu(SharedGpu),
 }
 
-/// Renderers on the CPU whose memory those who draw the same scene in turn share.
-pub type SharedMemory = Arc<Pool<CpuRenderer>>;
+/// A pool of CPU renderers. Programs that draw one scene in turn share their buffers.
+pub type RendererPool = Arc<Pool<CpuRenderer>>;
 
-/// The memory in which a renderer draws.
+/// The buffers of a renderer: its own, or from a pool.
 #[derive(Debug)]
-enum Memory {
+enum BufferSource {
     Own(Box<CpuRenderer>),
-    Shared(SharedMemory),
+    Shared(RendererPool),
 }
 
-impl Memory {
+impl BufferSource {
     fn lend<R>(&mut self, work: impl FnOnce(&mut CpuRenderer) -> R) -> R {
         match self {
             Self::Own(renderer) => work(renderer),
@@ -45,8 +45,8 @@ impl Memory {
     }
 }
 
-/// A copy has memory of its own, as the original has, or shares the same.
-impl Clone for Memory {
+/// A copy gets buffers of its own if the original has its own, or shares the pool.
+impl Clone for BufferSource {
     fn clone(&self) -> Self {
         match self {
             Self::Own(_) => Self::Own(Box::default()),
@@ -62,7 +62,7 @@ impl Clone for Renderer {
             Backend::Cpu { memory, pair, .. } => Backend::Cpu {
                 memory: memory.clone(),
                 passes: 0,
-                pair: pair.as_ref().map(|_| Pair::default()),
+                pair: pair.as_ref().map(|_| PairRenderer::default()),
             },
             Backend::Gpu(gpu) => Backend::Gpu(gpu.clone()),
         };
@@ -76,15 +76,15 @@ impl Clone for Renderer {
 impl Renderer {
     /// Creates a renderer on the CPU.
     pub fn cpu(scenery: Arc<Scenery>) -> Self {
-        Self::in_memory(scenery, Memory::Own(Box::default()))
+        Self::in_memory(scenery, BufferSource::Own(Box::default()))
     }
 
     /// Creates a renderer on the CPU that draws in memory which others use, too.
-    pub fn sharing(scenery: Arc<Scenery>, memory: SharedMemory) -> Self {
-        Self::in_memory(scenery, Memory::Shared(memory))
+    pub fn sharing(scenery: Arc<Scenery>, memory: RendererPool) -> Self {
+        Self::in_memory(scenery, BufferSource::Shared(memory))
     }
 
-    fn in_memory(scenery: Arc<Scenery>, memory: Memory) -> Self {
+    fn in_memory(scenery: Arc<Scenery>, memory: BufferSource) -> Self {
         Self {
             scenery,
             backend: Backend::Cpu {
@@ -113,7 +113,7 @@ impl Renderer {
     /// the feature `parallel`, in WebAssembly, on one core, and where the system gives no thread, the caller draws alone.
     pub fn set_threads(&mut self, threads: usize) {
         match &mut self.backend {
-            Backend::Cpu { pair, .. } if threads > 1 && Pair::is_of_use() => drop(pair.get_or_insert_default()),
+            Backend::Cpu { pair, .. } if threads > 1 && PairRenderer::is_of_use() => drop(pair.get_or_insert_default()),
             Backend::Cpu { pair, .. } => *pair = None,
             Backend::Gpu(_) => {}
         }
@@ -138,7 +138,7 @@ impl Renderer {
     /// Returns the number of passes over the scene's geometry on the CPU; 0 if images are drawn on a GPU.
     pub fn passes(&self) -> u64 {
         match &self.backend {
-            Backend::Cpu { passes, pair, .. } => passes + pair.as_ref().map_or(0, Pair::passes),
+            Backend::Cpu { passes, pair, .. } => passes + pair.as_ref().map_or(0, PairRenderer::passes),
             Backend::Gpu(_) => 0,
         }
     }

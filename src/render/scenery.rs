@@ -9,9 +9,10 @@ use crate::math::{Vec3, order, unit};
 use crate::mesh::Mesh;
 use crate::model::{CamLight, Model, TextureType};
 use crate::model_mesh::ModelMeshes;
+use crate::single::single;
 use crate::skin::SkinLook;
 use crate::tendon::{pieces, ropes};
-use crate::texture::{Loader, TexturePixels};
+use crate::texture::{TextureLoader, TexturePixels};
 use crate::view::{Poses, View};
 
 /// Groups of geoms, sites, tendons and skins that are visible.
@@ -29,7 +30,7 @@ pub struct LightSource {
     /// Unit direction in the body.
     pub dir: Vec3,
     /// The element that it follows.
-    pub aim: Aim,
+    pub aim: LightAim,
     /// Ambient colour.
     pub ambient: [f32; 3],
     /// Diffuse colour.
@@ -46,7 +47,7 @@ pub struct LightSource {
 
 /// The way a light follows its body or another, as its [`CamLight`] says.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Aim {
+pub enum LightAim {
     /// Moves and turns with its body.
     Body,
     /// Keeps its direction and its offset from the origin of its body.
@@ -142,7 +143,7 @@ impl Scenery {
     /// Fails if an image is missing, broken or of a shape that does not fit, or if the textures together have more pixels than
     /// [`Limits::texture_pixels`](mjcf_sim_model::Limits::texture_pixels).
     pub fn new(model: &Model, assets: &dyn AssetSource) -> Result<Self, RenderError> {
-        Self::build(model, Some(Loader::new(assets)))
+        Self::build(model, Some(TextureLoader::new(assets)))
     }
 
     /// Leaves textures out, as if the model had none.
@@ -153,8 +154,8 @@ impl Scenery {
         Self::build(model, None)
     }
 
-    fn build(model: &Model, loader: Option<Loader>) -> Result<Self, RenderError> {
-        let mut used = Used {
+    fn build(model: &Model, loader: Option<TextureLoader>) -> Result<Self, RenderError> {
+        let mut used = UsedTextures {
             model,
             loader,
             index: vec![None; model.textures.len()],
@@ -224,7 +225,7 @@ impl Scenery {
         self.cameras.get(camera).map_or(self.fovy, |c| c.fovy)
     }
 
-    /// Returns half the width of what a camera with a sensor sees at a distance of 1 m, m.
+    /// Returns half the width of the view of a camera with a sensor at a distance of 1 m, m.
     pub(super) fn half_width_of(&self, camera: usize) -> Option<f64> {
         self.cameras.get(camera).and_then(|c| c.half_width)
     }
@@ -291,11 +292,11 @@ impl Scenery {
     }
 }
 
-/// Makes the drawables of what is visible, but for the places of their textures; adds the meshes of the model to `meshes`.
+/// Makes the visible drawables, except for the placement of their textures, and adds the meshes of the model to `meshes`.
 fn drawables(
     model: &Model,
     far: f32,
-    used: &mut Used,
+    used: &mut UsedTextures,
     (meshes, skins): (&mut Vec<Mesh>, &mut Vec<SkinLook>),
 ) -> Result<Vec<Drawable>, RenderError> {
     let (ropes, mut model_meshes) = (ropes(model), ModelMeshes::new(model));
@@ -345,11 +346,7 @@ fn visible<'a>(model: &'a Model, ropes: &'a [Vec3]) -> impl Iterator<Item = Elem
     parts.chain(skins.map(Element::Skin))
 }
 
-pub(super) fn single<const N: usize>(v: [f64; N]) -> [f32; N] {
-    v.map(|x| x as f32)
-}
-
-impl Aim {
+impl LightAim {
     fn new(light: &crate::model::Light) -> Self {
         let (pos, dir) = (light.pos, light.dir0);
         match (light.mode, light.targetbodyid) {
@@ -376,7 +373,7 @@ impl LightSource {
             body: light.bodyid,
             pos: (!light.directional).then_some(light.pos),
             dir: unit(light.dir).0,
-            aim: Aim::new(light),
+            aim: LightAim::new(light),
             ambient: single(light.ambient),
             diffuse: single(light.diffuse),
             specular: single(light.specular),
@@ -415,16 +412,16 @@ fn lights(model: &Model) -> (Option<[[f32; 3]; 3]>, Vec<LightSource>) {
     )
 }
 
-/// The textures that something shows: others are not decoded.
-struct Used<'a> {
+/// The textures that some drawable uses. Others are not decoded.
+struct UsedTextures<'a> {
     model: &'a Model,
-    loader: Option<Loader<'a>>,
+    loader: Option<TextureLoader<'a>>,
     /// The place of each texture of the model among those that are used.
     index: Vec<Option<usize>>,
     textures: Vec<TexturePixels>,
 }
 
-impl Used<'_> {
+impl UsedTextures<'_> {
     /// Returns the place of a texture, which is loaded when it is first asked for; `None` without a loader.
     fn texture(&mut self, id: usize) -> Result<Option<usize>, RenderError> {
         let (Some(recipe), Some(loader)) = (self.model.textures.get(id), &mut self.loader) else {
@@ -437,7 +434,7 @@ impl Used<'_> {
         Ok(self.index[id])
     }
 
-    /// Checks a texture of what is blended, at least from some sides.
+    /// Checks the texture of a drawable that is blended, at least from some sides.
     fn blended(&self, id: usize) -> Result<(), RenderError> {
         match (self.model.textures.get(id), &self.loader) {
             (Some(recipe), Some(loader)) => loader.blended(recipe),

@@ -1,39 +1,37 @@
-//! Skins: meshes whose vertices follow several bodies, and which are therefore made anew for every picture.
+//! Skins: meshes whose vertices follow several bodies. [`PosedSkins`](super::PosedSkins) moves them.
 
-use super::drawable::Drawable;
-use super::mesh::{LANES, MOST, Mesh, MeshPart};
-use super::scenery::Scenery;
-use super::view::Poses;
-use crate::math::{Mat3, Vec3, mat_mul, mat_vec, quat_to_mat, sub, transpose};
+use super::mesh::{MOST, Mesh, MeshPart};
+use crate::math::{Mat3, Vec3, quat_to_mat, transpose};
 use crate::model;
 
-/// A skin as pictures need it: what does not move.
+/// The parts of a skin that do not change with poses: faces, bones and weights.
 #[derive(Clone, Debug)]
 pub struct SkinLook {
-    bones: Vec<Bone>,
-    vert: Vec<Vec3>,
-    face: Vec<[u32; 3]>,
-    inflate: f64,
-    parts: Vec<Part>,
+    pub bones: Vec<Bone>,
+    pub vert: Vec<Vec3>,
+    pub face: Vec<[u32; 3]>,
+    pub inflate: f64,
+    pub parts: Vec<SkinPart>,
 }
 
+/// A body that pulls vertices of a skin.
 #[derive(Clone, Debug)]
-struct Bone {
-    body: usize,
+pub struct Bone {
+    pub body: usize,
     /// Inverse of the orientation of the body where the skin is as written, and its position there, m.
-    turned: Mat3,
-    from: Vec3,
+    pub turned: Mat3,
+    pub from: Vec3,
     /// Vertices that it pulls, and its share of each.
-    pulls: Vec<(u32, f64)>,
+    pub pulls: Vec<(u32, f64)>,
 }
 
-/// Some of the faces of a skin: triangles count their vertices in 16 bits.
+/// A subset of a skin's faces, small enough for vertex indices of 16 bits.
 #[derive(Clone, Debug)]
-struct Part {
+pub struct SkinPart {
     /// Triangles and texture coordinates.
-    mesh: Mesh,
+    pub mesh: Mesh,
     /// The vertex of the skin that each vertex of the mesh is.
-    vertex: Vec<u32>,
+    pub vertex: Vec<u32>,
 }
 
 impl SkinLook {
@@ -69,7 +67,7 @@ impl SkinLook {
     }
 }
 
-fn parts(skin: &model::Skin) -> Vec<Part> {
+fn parts(skin: &model::Skin) -> Vec<SkinPart> {
     let mut parts = Vec::new();
     let mut faces = &skin.face[..];
     while !faces.is_empty() {
@@ -95,113 +93,10 @@ fn parts(skin: &model::Skin) -> Vec<Part> {
             count += 1;
         }
         mesh.end_loose();
-        // what fills up a group is a copy of the last
+        // copies of the last vertex fill up a group
         vertex.resize(mesh.x.len(), vertex.last().copied().unwrap_or_default());
-        parts.push(Part { mesh, vertex });
+        parts.push(SkinPart { mesh, vertex });
         faces = &faces[count..];
     }
     parts
-}
-
-/// The skins of a scene in given poses. Its buffers are reused from one picture to the next.
-#[derive(Clone, Debug, Default)]
-pub struct PosedSkins {
-    /// The meshes of all skins, in the order of the scenery.
-    meshes: Vec<Mesh>,
-    place: Vec<[f32; 3]>,
-    normal: Vec<[f32; 3]>,
-}
-
-impl PosedSkins {
-    /// Moves all skins.
-    pub fn update(&mut self, scenery: &Scenery, poses: &Poses) {
-        let parts = || scenery.skins.iter().flat_map(|skin| &skin.parts);
-        // a renderer may be given another scenery for the next picture
-        let same = |(mesh, part): (&Mesh, &Part)| {
-            mesh.x.len() == part.mesh.x.len()
-                && mesh.triangles == part.mesh.triangles
-                && mesh.texcoord == part.mesh.texcoord
-        };
-        if self.meshes.len() != parts().count() || !self.meshes.iter().zip(parts()).all(same) {
-            self.meshes = parts().map(|part| part.mesh.clone()).collect();
-        }
-        let mut meshes = self.meshes.iter_mut();
-        for skin in &scenery.skins {
-            place(skin, poses, &mut self.place);
-            normals(skin, &self.place, &mut self.normal);
-            for (part, mesh) in skin.parts.iter().zip(&mut meshes) {
-                dress(part, mesh, &self.place, &self.normal, skin.inflate);
-            }
-        }
-    }
-
-    /// Returns the mesh of a drawable, which is that of a skin or one of the scenery.
-    #[inline(always)]
-    pub fn mesh<'a>(&'a self, scenery: &'a Scenery, drawable: &Drawable) -> &'a Mesh {
-        match drawable.mesh.checked_sub(scenery.meshes.len()) {
-            Some(worn) => &self.meshes[worn],
-            None => &scenery.meshes[drawable.mesh],
-        }
-    }
-
-    /// Returns the meshes of all skins, in the order of their drawables.
-    pub fn meshes(&self) -> &[Mesh] {
-        &self.meshes
-    }
-}
-
-/// Sums what the bones make of the vertices, each sum in single precision, as in MuJoCo.
-fn place(skin: &SkinLook, poses: &Poses, out: &mut Vec<[f32; 3]>) {
-    out.clear();
-    out.resize(skin.vert.len(), [0.0; 3]);
-    for bone in &skin.bones {
-        let rotation = mat_mul(&poses.xmat[bone.body], &bone.turned);
-        let shift = sub(poses.xpos[bone.body], mat_vec(&rotation, bone.from));
-        for &(vertex, weight) in &bone.pulls {
-            let turned = mat_vec(&rotation, skin.vert[vertex as usize]);
-            for (k, v) in out[vertex as usize].iter_mut().enumerate() {
-                *v = (f64::from(*v) + weight * (turned[k] + shift[k])) as f32;
-            }
-        }
-    }
-}
-
-/// Sums the normals of the faces at each vertex, by area.
-fn normals(skin: &SkinLook, place: &[[f32; 3]], out: &mut Vec<[f32; 3]>) {
-    out.clear();
-    out.resize(place.len(), [0.0; 3]);
-    for face in &skin.face {
-        let [a, b, c] = face.map(|v| place[v as usize].map(f64::from));
-        let normal = crate::math::cross(sub(b, a), sub(c, a));
-        for &vertex in face {
-            for (sum, x) in out[vertex as usize].iter_mut().zip(normal) {
-                *sum = (f64::from(*sum) + x) as f32;
-            }
-        }
-    }
-    for normal in out {
-        let wide = normal.map(f64::from);
-        let length = crate::math::norm(wide);
-        if length > 0.0 {
-            *normal = wide.map(|x| (x / length) as f32);
-        }
-    }
-}
-
-/// Writes the vertices of a part, moved along their normals.
-fn dress(part: &Part, mesh: &mut Mesh, place: &[[f32; 3]], normal: &[[f32; 3]], inflate: f64) {
-    let (mut low, mut high) = ([f32::INFINITY; 3], [f32::NEG_INFINITY; 3]);
-    for (k, &vertex) in part.vertex.iter().enumerate() {
-        let (at, n) = (place[vertex as usize], normal[vertex as usize]);
-        let at = [0, 1, 2].map(|i| (f64::from(at[i]) + inflate * f64::from(n[i])) as f32);
-        (mesh.x[k], mesh.y[k], mesh.z[k]) = (at[0], at[1], at[2]);
-        mesh.normal[k] = n;
-        for i in 0..3 {
-            (low[i], high[i]) = (low[i].min(at[i]), high[i].max(at[i]));
-        }
-    }
-    debug_assert!(part.vertex.len().is_multiple_of(LANES));
-    for band in &mut mesh.bands {
-        (band.low, band.high) = (low, high);
-    }
 }

@@ -1,5 +1,8 @@
 //! Rows of quadrilaterals, of which meshes consist.
 
+/// Number of vertices of which the length of each band of a mesh is a multiple.
+pub const LANES: usize = 8;
+
 /// Number of quadrilaterals of which the length of each strip is a multiple.
 pub const STRIP_LANES: usize = 4;
 

@@ -6,7 +6,7 @@ use super::view::Poses;
 use crate::math::{MINVAL, Mat3, Vec3, add, add_scaled, dot, norm, scale, sub, unit};
 use crate::model::{Model, TrnType, Wrap};
 
-/// Points of a catenary at even distances, of which MuJoCo leaves out the last but one.
+/// Points of a catenary at even distances. MuJoCo leaves out the last but one.
 const POINTS: usize = 30;
 /// Pieces of a catenary.
 const HANGING: usize = POINTS - 2;
@@ -113,7 +113,7 @@ fn hanging(from: Vec3, to: Vec3, rope: Vec3, piece: usize) -> Option<[Vec3; 2]> 
         return (piece == 0).then_some([from, to]);
     }
     let place = |x: f64, y: f64| add_scaled(add_scaled(from, across, x), up, y);
-    // the length of what hangs across: its square is that of the whole less that of the rise
+    // the length across: its square is that of the whole less that of the rise
     let taut = (length * length - rise * rise).sqrt();
     if width < NARROW * length {
         let down = 0.5 * ((length * length - width * width).sqrt() - rise);

@@ -2,17 +2,19 @@
 
 mod cube;
 mod pattern;
+mod plain;
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
+use crate::RenderError;
 use crate::assets::AssetSource;
 use crate::formats::png::{decode_png, is_opaque};
 use crate::limits::Limits;
 use crate::model::{Builtin, Texture as Recipe, TextureType};
-use crate::{RenderError, plain};
 pub use cube::{Cube, components};
 use pattern::{Mt19937, cube_builtin, flat_builtin, truncated};
+pub use plain::SETTLED;
 
 /// Largest side of a texture, pixels: images are halved while loading until they fit, so that the original's textures
 /// of 2500 and 5000 pixels stay small.
@@ -22,7 +24,7 @@ const MAX_PATTERN: usize = Limits::DEFAULT.picture_side as usize;
 
 /// One mip level of an image: red, green, blue and a mark for each pixel.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Level {
+pub struct MipLevel {
     /// Width in pixels.
     pub width: usize,
     /// Height in pixels.
@@ -32,18 +34,18 @@ pub struct Level {
 }
 
 /// An image with its mip levels, each half the size of the one before, down to one pixel.
-pub type Face = Arc<Vec<Level>>;
+pub type MipChain = Arc<Vec<MipLevel>>;
 
 /// A texture ready for sampling.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum TexturePixels {
     /// One image, repeated in both directions.
-    Flat(Face),
+    Flat(MipChain),
     /// Images on the sides of a cube.
     Cube(Cube),
 }
 
-impl Level {
+impl MipLevel {
     fn filled(width: usize, height: usize, rgb: [u8; 3]) -> Self {
         let pixels = vec![[rgb[0], rgb[1], rgb[2], 255]; width * height];
         Self { width, height, pixels }
@@ -118,7 +120,7 @@ impl Level {
         }
     }
 
-    fn face(mut self) -> Face {
+    fn face(mut self) -> MipChain {
         while self.width.max(self.height) > MAX_TEXTURE {
             self = self.halved();
         }
@@ -132,15 +134,15 @@ impl Level {
 }
 
 /// A loader of textures that decodes an image used by several only once.
-pub struct Loader<'a> {
+pub struct TextureLoader<'a> {
     assets: &'a dyn AssetSource,
     /// By path, and how they are mirrored.
-    faces: BTreeMap<(String, [bool; 2]), Face>,
+    faces: BTreeMap<(String, [bool; 2]), MipChain>,
     /// Pixels that may still be made.
     left: usize,
 }
 
-impl<'a> Loader<'a> {
+impl<'a> TextureLoader<'a> {
     /// Creates a loader that reads images from `assets`.
     pub fn new(assets: &'a dyn AssetSource) -> Self {
         Self {
@@ -188,7 +190,7 @@ impl<'a> Loader<'a> {
         if flat {
             return Err(wrong("it has neither an image file nor a builtin pattern".to_string()));
         }
-        let mut faces: [Option<Face>; 6] = Default::default();
+        let mut faces: [Option<MipChain>; 6] = Default::default();
         let mut side = None;
         for (face, path) in faces.iter_mut().zip(&recipe.cube_files) {
             let Some(path) = path else { continue };
@@ -205,12 +207,12 @@ impl<'a> Loader<'a> {
         let Some(side) = side else {
             return Err(wrong("it has neither an image file nor a builtin pattern".to_string()));
         };
-        let plain = Level::filled(side, side, truncated(recipe.rgb1)).face();
+        let plain = MipLevel::filled(side, side, truncated(recipe.rgb1)).face();
         let faces = faces.map(|f| f.unwrap_or_else(|| plain.clone()));
         Ok(TexturePixels::Cube(Cube::new(faces)))
     }
 
-    /// Checks a texture of what is blended with what lies behind.
+    /// Checks the texture of a drawable that is blended.
     ///
     /// # Errors
     /// Its image is read with opacities, by which MuJoCo multiplies there, and has some.
@@ -263,7 +265,7 @@ impl<'a> Loader<'a> {
                 ),
             });
         }
-        let plain = Level::filled(side, side, truncated(recipe.rgb1)).face();
+        let plain = MipLevel::filled(side, side, truncated(recipe.rgb1)).face();
         let mut faces = [0; 6].map(|_| plain.clone());
         for (square, face) in recipe.gridlayout.iter().enumerate() {
             if let Some(face) = face {
@@ -288,7 +290,7 @@ impl<'a> Loader<'a> {
     }
 
     /// Decodes an image with its mip levels.
-    fn image(&mut self, path: &str, flip: [bool; 2]) -> Result<Face, RenderError> {
+    fn image(&mut self, path: &str, flip: [bool; 2]) -> Result<MipChain, RenderError> {
         let key = (path.to_string(), flip);
         if let Some(face) = self.faces.get(&key) {
             return Ok(face.clone());
@@ -299,7 +301,7 @@ impl<'a> Loader<'a> {
     }
 
     /// Decodes an image as it is, mirrored.
-    fn level(&mut self, path: &str, flip: [bool; 2]) -> Result<Level, RenderError> {
+    fn level(&mut self, path: &str, flip: [bool; 2]) -> Result<MipLevel, RenderError> {
         let bytes = self.assets.read(path)?;
         let mut level = decode(path, &bytes)?;
         self.take(level.pixels.len()).map_err(|message| RenderError::Image {
@@ -311,13 +313,13 @@ impl<'a> Loader<'a> {
     }
 }
 
-fn decode(path: &str, bytes: &[u8]) -> Result<Level, RenderError> {
+fn decode(path: &str, bytes: &[u8]) -> Result<MipLevel, RenderError> {
     let picture = decode_png(bytes, &Limits::DEFAULT).map_err(|message| RenderError::Image {
         path: path.to_string(),
         message,
     })?;
     let (pixels, _) = picture.rgb.as_chunks::<3>();
-    Ok(Level {
+    Ok(MipLevel {
         width: picture.width,
         height: picture.height,
         pixels: pixels.iter().map(|&[r, g, b]| [r, g, b, 255]).collect(),

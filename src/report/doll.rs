@@ -6,7 +6,7 @@ use crate::math::*;
 use crate::mimo::{JOINT_PREFIX, upright_extent};
 use crate::model::Model;
 use crate::physics::{State, Topology, cameras, com_pos, kinematics};
-use crate::render::{Aim, CpuRenderer, Element, LightSource, Poses, Scenery, View};
+use crate::render::{CpuRenderer, Element, LightAim, LightSource, Poses, Scenery, View};
 
 /// Width of a picture, pixels.
 pub(super) const WIDTH: usize = 400;
@@ -168,7 +168,7 @@ impl Doll {
             body: self.hip,
             pos: None,
             dir: unit([turn * dir[0], turn * dir[1], dir[2]]).0,
-            aim: Aim::Body,
+            aim: LightAim::Body,
             ambient: [0.2; 3],
             diffuse: [strength; 3],
             specular: [0.3; 3],

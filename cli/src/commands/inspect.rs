@@ -9,6 +9,7 @@ use babybench::formats::png::write_png;
 use babybench::mimo::joint_part;
 use babybench::mjcf_loader::elements;
 use babybench::model::{EqualityKind, TrnType};
+use babybench::physics::collision::PairTable;
 use babybench::report::skin::draw_skin;
 use babybench::runs::replay;
 use babybench::sensors::Component;
@@ -146,7 +147,8 @@ fn write_sizes(out: &mut impl Write, env: &Env) -> io::Result<()> {
         model.ntendon(),
         model.nsensor(),
     )?;
-    let pairs = env.engine().pairs().pairs();
+    let table = PairTable::new(model);
+    let pairs = table.pairs();
     writeln!(
         out,
         "timestep {} s, frame_skip {}; {} pairs of geoms can collide; total body mass {:.4} kg",

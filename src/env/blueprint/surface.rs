@@ -6,7 +6,7 @@ use super::Blueprint;
 use crate::assets::AssetSource;
 use crate::config::RendererKind;
 use crate::env::EnvError;
-use crate::render::{Renderer, Scenery, SharedGpu, SharedMemory, open_gpu};
+use crate::render::{Renderer, RendererPool, Scenery, SharedGpu, open_gpu};
 use crate::sensors::SkinLayout;
 
 /// The skin and the look of a scene's bodies.
@@ -20,7 +20,7 @@ pub(super) struct Surface {
     /// Meshes and textures, made when they are first needed.
     pub(super) scenery: Arc<OnceLock<Arc<Scenery>>>,
     /// The buffers in which the eyes of environments are drawn on the CPU.
-    pub(super) painting: SharedMemory,
+    pub(super) painting: RendererPool,
     /// The renderer on a GPU, opened when it is first needed.
     pub(super) gpu: Arc<OnceLock<SharedGpu>>,
 }

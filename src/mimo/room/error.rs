@@ -3,7 +3,7 @@
 use thiserror::Error;
 
 use crate::config::Scene;
-use crate::mjcf_loader::Place;
+use crate::mjcf_loader::Location;
 use crate::text::quoted;
 
 /// A fault of a custom scene, with its remedy.
@@ -60,7 +60,7 @@ pub enum RoomError {
     #[error("{place}: {reason}")]
     At {
         /// Place of the element.
-        place: Box<Place>,
+        place: Box<Location>,
         /// Description of the fault, and its remedy.
         reason: String,
     },

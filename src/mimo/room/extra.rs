@@ -4,7 +4,7 @@ use quick_xml::events::Event;
 use quick_xml::reader::Reader;
 
 use super::RoomError;
-use crate::mjcf_loader::Place;
+use crate::mjcf_loader::Location;
 
 /// Name of the text in errors.
 pub(super) const SHOWN: &str = "scene_extra";
@@ -75,7 +75,7 @@ impl Extra {
     }
 
     /// Maps a position in the document to one in the text.
-    pub fn locate(&self, place: &mut Place) {
+    pub fn locate(&self, place: &mut Location) {
         place.file = SHOWN.to_string();
         for inserted in self.inserted.iter().filter(|i| i.line == place.line) {
             if place.column >= inserted.column + inserted.length {
@@ -160,10 +160,10 @@ mod tests {
             ("<light/>", 3, 10),
         ] {
             let found = lines[line - 1].find(what).expect("it is there") + 1;
-            let mut place = Place {
+            let mut place = Location {
                 line,
                 column: found,
-                ..Place::default()
+                ..Location::default()
             };
             extra.locate(&mut place);
             assert_eq!((place.column, place.file.as_str()), (column, "scene_extra"), "{what}");

@@ -24,7 +24,7 @@ use crate::assets::{AssetError, AssetSource, DirAssets, directory, resolve};
 use crate::config::{Config, Learner, Scene};
 use crate::mimo::embedded;
 use crate::mimo::scene::{SceneError, Version, actuators, include};
-use crate::mjcf_loader::{ErrorKind, LoadError, Place};
+use crate::mjcf_loader::{ErrorKind, LoadError, Location};
 use extra::Extra;
 
 /// Folder of the library's documents, in which a custom scene is read.
@@ -224,7 +224,7 @@ impl<A: AssetSource> Room<A> {
     }
 
     /// Converts a place in a file to the one that the user sees.
-    fn locate(&self, place: &mut Place) {
+    fn locate(&self, place: &mut Location) {
         let Some(name) = place.file.strip_prefix(FOLDER).filter(|name| !self.library(name)) else {
             return;
         };

@@ -5,13 +5,13 @@ use crate::assets::AssetSource;
 use crate::config::Config;
 use crate::limits::Limits;
 use crate::mimo::scene::{SceneError, document_path, scene_xml};
-use crate::mjcf_loader::{Place, Tree, elements};
+use crate::mjcf_loader::{Location, Tree, elements};
 
 /// An attribute of a custom scene that changes nothing here.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Unused {
     /// Place of the element.
-    pub place: Place,
+    pub place: Location,
     /// The attribute.
     pub attribute: String,
     /// Its meaning, and why it changes nothing.

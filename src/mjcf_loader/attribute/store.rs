@@ -1,12 +1,12 @@
-//! How a value reaches a field of the typed document, and how a document would write what the field holds.
+//! Stores the values of attributes in fields of the typed document, and writes fields as attributes.
 
 use super::Value;
 
-/// What is done with a field.
-pub(crate) type Visit<'a> = &'a mut dyn FnMut(&mut dyn Store);
+/// A function that reads or writes a field.
+pub(crate) type FieldVisitor<'a> = &'a mut dyn FnMut(&mut dyn AttributeField);
 
-/// A field that an attribute can be stored in.
-pub(crate) trait Store {
+/// A field that holds the value of an attribute.
+pub(crate) trait AttributeField {
     /// Stores a value. A value of another kind, which the tables rule out, changes nothing.
     fn store(&mut self, value: &Value);
 
@@ -14,7 +14,7 @@ pub(crate) trait Store {
     fn show(&self) -> String;
 }
 
-impl Store for String {
+impl AttributeField for String {
     fn store(&mut self, value: &Value) {
         if let Value::Text(text) = value {
             text.clone_into(self);
@@ -26,7 +26,7 @@ impl Store for String {
     }
 }
 
-impl Store for bool {
+impl AttributeField for bool {
     fn store(&mut self, value: &Value) {
         if let Value::Flag(flag) = value {
             *self = *flag;
@@ -38,7 +38,7 @@ impl Store for bool {
     }
 }
 
-impl Store for f64 {
+impl AttributeField for f64 {
     fn store(&mut self, value: &Value) {
         if let Value::Reals(values) = value
             && let [first, ..] = values[..]
@@ -52,7 +52,7 @@ impl Store for f64 {
     }
 }
 
-impl<const N: usize> Store for [f64; N] {
+impl<const N: usize> AttributeField for [f64; N] {
     fn store(&mut self, value: &Value) {
         if let Value::Reals(values) = value {
             for (to, from) in self.iter_mut().zip(values) {
@@ -66,7 +66,7 @@ impl<const N: usize> Store for [f64; N] {
     }
 }
 
-impl Store for Vec<f64> {
+impl AttributeField for Vec<f64> {
     fn store(&mut self, value: &Value) {
         if let Value::Reals(values) = value {
             self.clone_from(values);
@@ -78,7 +78,7 @@ impl Store for Vec<f64> {
     }
 }
 
-impl Store for [u8; 3] {
+impl AttributeField for [u8; 3] {
     fn store(&mut self, value: &Value) {
         if let Value::Letters(letters) = value {
             *self = *letters;
@@ -92,7 +92,7 @@ impl Store for [u8; 3] {
 
 macro_rules! store_whole {
     ($($ty:ty),*) => {$(
-        impl Store for $ty {
+        impl AttributeField for $ty {
             fn store(&mut self, value: &Value) {
                 if let Value::Int(value) = value
                     && let Ok(value) = Self::try_from(*value)
@@ -110,7 +110,7 @@ macro_rules! store_whole {
 store_whole!(usize, i32, i64);
 
 /// Bits, which documents write as whole numbers whose sign is the highest of them.
-impl Store for u32 {
+impl AttributeField for u32 {
     fn store(&mut self, value: &Value) {
         if let Value::Int(value) = value
             && let Ok(value) = i32::try_from(*value)
@@ -127,7 +127,7 @@ impl Store for u32 {
 /// A value that need not be given. A negative count, which the tables allow as -1, counts as not given.
 macro_rules! store_optional {
     ($([$($parameter:tt)*] $ty:ty = $empty:expr),* $(,)?) => {$(
-        impl<$($parameter)*> Store for Option<$ty> {
+        impl<$($parameter)*> AttributeField for Option<$ty> {
             fn store(&mut self, value: &Value) {
                 if !matches!(value, Value::Int(..0)) {
                     let mut given = $empty;
@@ -137,7 +137,7 @@ macro_rules! store_optional {
             }
 
             fn show(&self) -> String {
-                self.as_ref().map(Store::show).unwrap_or_default()
+                self.as_ref().map(AttributeField::show).unwrap_or_default()
             }
         }
     )*};

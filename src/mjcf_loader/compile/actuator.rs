@@ -1,6 +1,6 @@
 //! Compiles actuators.
 
-use super::context::{Context, Ids, User};
+use super::context::{Context, Ids, UserDataSize};
 use crate::actuator::{Actuator, Target};
 use crate::document::Document;
 use crate::error::{ErrorKind, LoadError};
@@ -26,12 +26,13 @@ pub(super) fn compile_actuators(
     arrays: &mut Arrays,
 ) -> Result<(), LoadError> {
     let users = document.actuators.iter().map(|actuator| &actuator.user);
-    let users = User::new("nuser_actuator", document.size.nuser_actuator, users);
+    let users = UserDataSize::new("nuser_actuator", document.size.nuser_actuator, users);
     for actuator in &document.actuators {
         let user = users.of(context, actuator.at, &actuator.user)?;
         let (trntype, trnid, refid) = transmission(context, actuator, ids)?;
         let range = match trntype {
             TrnType::Tendon => Some(arrays.tendon_range[trnid]),
+            // the range of a ball joint is that of an angle, which is no coordinate that a servo could track
             TrnType::Joint | TrnType::JointInParent if arrays.jnt_type[trnid].nv() > 1 => None,
             TrnType::Joint | TrnType::JointInParent => Some(arrays.jnt_range[trnid]),
             TrnType::SliderCrank | TrnType::Site | TrnType::Body => None,
@@ -66,7 +67,7 @@ pub(super) fn compile_actuators(
     Ok(())
 }
 
-/// Returns what an actuator acts on: kind, id, and the second id of kinds that have two.
+/// Returns the transmission of an actuator: kind, id, and the second id of kinds that have two.
 fn transmission(
     context: &Context,
     actuator: &Actuator,
@@ -104,6 +105,7 @@ fn transmission(
         let crank = find_site("cranksite", name)?;
         Ok((TrnType::SliderCrank, crank, Some(find_site("slidersite", slider)?)))
     } else if let Some(name) = &actuator.at_site.site {
+        // an empty name is no reference, as in MuJoCo
         let reference = actuator.at_site.refsite.as_ref().filter(|name| !name.is_empty());
         let reference = reference.map(|name| find_site("refsite", name)).transpose()?;
         Ok((TrnType::Site, find_site("site", name)?, reference))
@@ -114,9 +116,10 @@ fn transmission(
     }
 }
 
-/// Returns the ranges of control and activation: as given, or in the proportion `inheritrange` to that of what it acts on.
+/// Returns the ranges of control and activation: as given, or `inheritrange` times the range of the joint or tendon, around its middle.
 fn ranges(context: &Context, actuator: &Actuator, range: Option<[f64; 2]>) -> Result<([f64; 2], [f64; 2]), LoadError> {
     let (law, given) = (&actuator.law, (actuator.ctrlrange, actuator.activation.range));
+    // a position servo: force = kp (control - length) - kv velocity. MuJoCo recognises it by its numbers, whatever element made it.
     let servo =
         law.gaintype == GainType::Fixed && law.biastype == BiasType::Affine && law.gainprm[0] == -law.biasprm[1];
     if !servo || actuator.inheritrange <= 0.0 {
@@ -140,7 +143,7 @@ fn ranges(context: &Context, actuator: &Actuator, range: Option<[f64; 2]>) -> Re
     }
 }
 
-/// Compiles what makes a force of control, length and velocity.
+/// Compiles the force law of an actuator: activation dynamics, gain and bias.
 fn compile_law(context: &Context, actuator: &Actuator, arrays: &mut Arrays) -> Result<(), LoadError> {
     let law = &actuator.law;
     let stateful = law.dyntype != DynType::None;
@@ -152,6 +155,7 @@ fn compile_law(context: &Context, actuator: &Actuator, arrays: &mut Arrays) -> R
         return Err(context.invalid(actuator.at, wrong));
     }
     let wrong = match law.actdim {
+        // the caller has pushed the limit of this actuator
         _ if !stateful && arrays.actuator_actlimited.last() == Some(&true) => Some(NO_ACTIVATION),
         1.. if !stateful => Some(STATELESS),
         0 | 2.. if stateful => Some(STATEFUL),
@@ -172,8 +176,9 @@ fn compile_law(context: &Context, actuator: &Actuator, arrays: &mut Arrays) -> R
     Ok(())
 }
 
-/// Returns what is wrong with the gain or the bias of a muscle.
+/// Returns a description of a fault in the gain or the bias of a muscle.
 fn check_muscle(&[low, high, _, scale, lmin, lmax, vmax, fpmax, fvmax, _]: &[f64; 10]) -> Option<&'static str> {
+    // the curves divide by high - low, 1 - lmin, lmax - 1 and vmax
     if low >= high {
         Some(RANGE)
     } else if lmin >= 1.0 || lmax <= 1.0 {

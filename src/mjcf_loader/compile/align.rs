@@ -1,7 +1,7 @@
 //! Moves the frame of a free body into its centre of mass and along its principal axes, where the document asks for it.
 
 use super::context::Context;
-use crate::document::{Document, Tri};
+use crate::document::{AutoBool, Document};
 use crate::math::{Quat, Vec3, add, quat_mul, quat_rotate, sub};
 use crate::model::{Arrays, JointType};
 
@@ -11,9 +11,9 @@ pub(super) fn align(context: &Context, document: &Document, body: usize, id: usi
         return;
     };
     let asked = match joint.align {
-        Tri::Yes => true,
-        Tri::No => false,
-        Tri::Auto => context.compiler(joint.at).alignfree,
+        AutoBool::Yes => true,
+        AutoBool::No => false,
+        AutoBool::Auto => context.compiler(joint.at).alignfree,
     };
     let leaf = document.bodies.get(body + 1).is_none_or(|next| next.parent != body);
     if joint.kind != JointType::Free || !asked || !leaf {

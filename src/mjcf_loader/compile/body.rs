@@ -2,12 +2,12 @@
 
 use super::align::align;
 use super::camera::{compile_camera, compile_light};
-use super::context::{Context, Ids, User, named};
-use super::fuse::{Place, places};
+use super::context::{Context, Ids, UserDataSize, named};
+use super::fuse::{KeptBody, places};
 use super::geom::{check_size, compile_geom, place};
-use super::geometry::{Solid, merge, orientation, principal};
+use super::geometry::{Solid, merge, principal};
 use super::joint::compile_joints;
-use crate::document::{Body, BodyFrame, Copied, Document, Frame, Geom, Orientation, Site, Tri};
+use crate::document::{AutoBool, Body, BodyFrame, Document, Geom, Orientation, ReplicaIndex, Site};
 use crate::error::LoadError;
 use crate::math::{MINVAL, Quat, Vec3, add, mat_vec, quat_to_mat};
 use crate::model::Arrays;
@@ -22,7 +22,7 @@ pub(super) fn compile(
 ) -> Result<Vec<usize>, LoadError> {
     let places = places(context, document)?;
     let mut last_dof = Vec::with_capacity(places.len());
-    let users = Users::new(document);
+    let users = UserDataSizes::new(document);
     let limits = &context.tree.limits;
     for (id, place) in places.iter().enumerate() {
         let body = &document.bodies[place.body];
@@ -38,6 +38,7 @@ pub(super) fn compile(
         arrays.nmocap += usize::from(body.mocap);
         let above = last_dof.get(place.parent).copied().flatten();
         last_dof.push(compile_joints(context, body, id, above, &users.jnt, arrays)?);
+        // bodies without joints move with the first ancestor that has some
         arrays.body_weldid.push(if id == 0 || !body.joints.is_empty() {
             id
         } else {
@@ -47,12 +48,13 @@ pub(super) fn compile(
         let mut solid = compile_part(context, document, [place.body, id], ids, &users, arrays)?;
         for fused in &place.fused {
             let part = &document.bodies[fused.body];
-            // lost with the body, but not too long
+            // checked, though it is lost with the body, so that fusing hides no error
             users.body.of(context, part.at, &part.user)?;
             let (geom, site) = (arrays.geom_name.len(), arrays.site_name.len());
             let own = compile_part(context, document, [fused.body, id], ids, &users, arrays)?;
             fused.carry(&mut arrays.geom_pos[geom..], &mut arrays.geom_quat[geom..]);
             fused.carry(&mut arrays.site_pos[site..], &mut arrays.site_quat[site..]);
+            // the world has no mass
             if id > 0 {
                 solid = fused.added_to(solid, own).map_err(|m| context.invalid(part.at, m))?;
             }
@@ -80,36 +82,36 @@ pub(super) fn compile(
     Ok(places.iter().map(|place| document.bodies[place.body].at).collect())
 }
 
-/// The lengths of user data on bodies.
-struct Users {
-    body: User,
-    jnt: User,
-    geom: User,
-    site: User,
-    cam: User,
+/// The lengths of the user data of bodies, joints, geoms, sites and cameras.
+struct UserDataSizes {
+    body: UserDataSize,
+    jnt: UserDataSize,
+    geom: UserDataSize,
+    site: UserDataSize,
+    cam: UserDataSize,
 }
 
-impl Users {
+impl UserDataSizes {
     fn new(document: &Document) -> Self {
         let (size, bodies) = (&document.size, &document.bodies);
         Self {
-            body: User::new("nuser_body", size.nuser_body, bodies.iter().map(|b| &b.user)),
-            jnt: User::new(
+            body: UserDataSize::new("nuser_body", size.nuser_body, bodies.iter().map(|b| &b.user)),
+            jnt: UserDataSize::new(
                 "nuser_jnt",
                 size.nuser_jnt,
                 bodies.iter().flat_map(|b| &b.joints).map(|j| &j.user),
             ),
-            geom: User::new(
+            geom: UserDataSize::new(
                 "nuser_geom",
                 size.nuser_geom,
                 bodies.iter().flat_map(|b| &b.geoms).map(|g| &g.user),
             ),
-            site: User::new(
+            site: UserDataSize::new(
                 "nuser_site",
                 size.nuser_site,
                 bodies.iter().flat_map(|b| &b.sites).map(|s| &s.user),
             ),
-            cam: User::new(
+            cam: UserDataSize::new(
                 "nuser_cam",
                 size.nuser_cam,
                 bodies.iter().flat_map(|b| &b.cameras).map(|c| &c.user),
@@ -118,7 +120,7 @@ impl Users {
     }
 }
 
-fn frame(body: &Body, place: &Place, id: usize, arrays: &mut Arrays) {
+fn frame(body: &Body, place: &KeptBody, id: usize, arrays: &mut Arrays) {
     let root = match (id, place.parent) {
         (_, 0) => id,
         (_, parent) => arrays.body_rootid[parent],
@@ -130,17 +132,13 @@ fn frame(body: &Body, place: &Place, id: usize, arrays: &mut Arrays) {
     arrays.body_quat.push(place.quat);
 }
 
-pub(super) fn quat_of(context: &Context, at: usize, frame: &Frame) -> Result<Quat, LoadError> {
-    orientation(&frame.orientation, context.compiler(at)).map_err(|message| context.invalid(at, message))
-}
-
 /// Compiles the geoms and sites of a body of the document as those of `id`, which it may be fused with; returns its inertia.
 fn compile_part(
     context: &Context,
     document: &Document,
     [own, id]: [usize; 2],
     ids: &Ids,
-    users: &Users,
+    users: &UserDataSizes,
     arrays: &mut Arrays,
 ) -> Result<Solid, LoadError> {
     let body = &document.bodies[own];
@@ -160,7 +158,7 @@ fn compile_geoms(
     body: &Body,
     id: usize,
     ids: &Ids,
-    user: &User,
+    user: &UserDataSize,
     arrays: &mut Arrays,
 ) -> Result<Vec<Solid>, LoadError> {
     let mut solids = Vec::with_capacity(body.geoms.len());
@@ -172,7 +170,7 @@ fn compile_geoms(
         } else {
             compile_geom(context, geom, id, ids, arrays)?
         };
-        // the others are only drawn, or only collide
+        // geoms of other groups are only drawn, or only collide
         let [lowest, highest] = context.compiler(body.at).inertiagrouprange;
         if (lowest..=highest).contains(&(geom.group as f64)) {
             solids.push(solid);
@@ -185,7 +183,7 @@ fn compile_geoms(
     Ok(solids)
 }
 
-/// Compiles a geom that is left out, for what it weighs and for the errors that are in it.
+/// Compiles a geom that is left out of the model, for its mass and its errors.
 fn weigh(context: &Context, geom: &Geom, body: usize, ids: &Ids, arrays: &mut Arrays) -> Result<Solid, LoadError> {
     let mut aside = Arrays::without_elements(
         String::new(),
@@ -193,7 +191,7 @@ fn weigh(context: &Context, geom: &Geom, body: usize, ids: &Ids, arrays: &mut Ar
         arrays.vis.clone(),
         arrays.stat.clone(),
     );
-    // all that a geom depends on; a mesh is moved for those that follow, too
+    // the arrays that a geom depends on. Meshes are moved, not copied: compiling a geom may fit its mesh, which later geoms see, too
     aside.meshes = std::mem::take(&mut arrays.meshes);
     aside.hfields = std::mem::take(&mut arrays.hfields);
     aside.body_weldid = std::mem::take(&mut arrays.body_weldid);
@@ -202,19 +200,19 @@ fn weigh(context: &Context, geom: &Geom, body: usize, ids: &Ids, arrays: &mut Ar
     solid
 }
 
-/// Returns mass and inertia of a body, `own` of the document: explicit, else from its geoms, else none, as the world has.
+/// Returns mass and inertia of body `own` of the document: explicit, else from its geoms. The world has none.
 fn inertial(context: &Context, body: &Body, own: usize, solids: &[Solid]) -> Result<Solid, LoadError> {
     let compiler = context.compiler(body.at);
     let from_geoms = match compiler.inertiafromgeom {
-        Tri::No => false,
-        Tri::Yes => true,
-        Tri::Auto => body.inertial.is_none(),
+        AutoBool::No => false,
+        AutoBool::Yes => true,
+        AutoBool::Auto => body.inertial.is_none(),
     };
     let invalid = |message| context.invalid(body.at, message);
     // Without mass the inertial frame repeats the frame of the body as it is written, as in MuJoCo.
     let mut solid = Solid {
         pos: body.frame.pos,
-        quat: quat_of(context, body.at, &body.frame)?,
+        quat: context.quat_of(body.at, &body.frame)?,
         mass: 0.0,
         inertia: [0.0; 3],
     };
@@ -224,7 +222,7 @@ fn inertial(context: &Context, body: &Body, own: usize, solids: &[Solid]) -> Res
         (_, [_, _, ..]) if from_geoms => solid = merge(solids).map_err(invalid)?,
         (Some(given), _) => {
             solid.pos = given.frame.pos;
-            solid.quat = quat_of(context, given.at, &given.frame)?;
+            solid.quat = context.quat_of(given.at, &given.frame)?;
             (solid.mass, solid.inertia) = (given.mass, given.diaginertia);
             if let Some(full) = &given.fullinertia {
                 (solid.quat, solid.inertia) = principal(full).map_err(|m| context.invalid(given.at, m))?;
@@ -236,6 +234,7 @@ fn inertial(context: &Context, body: &Body, own: usize, solids: &[Solid]) -> Res
         solid.mass = solid.mass.max(compiler.boundmass);
         solid.inertia = solid.inertia.map(|moment| moment.max(compiler.boundinertia));
     }
+    // the moments of no distribution of mass violate the triangle inequality
     let [a, b, c] = solid.inertia;
     if a + b < c || a + c < b || b + c < a {
         if !compiler.balanceinertia {
@@ -272,6 +271,7 @@ fn scale_masses(context: &Context, arrays: &mut Arrays) {
         return;
     }
     let total: f64 = arrays.body_mass.iter().skip(1).sum();
+    // MuJoCo's mjMINVAL keeps a model without mass from dividing by zero
     let scale = (wanted / total.max(MINVAL)).max(MINVAL);
     for (mass, inertia) in arrays.body_mass.iter_mut().zip(&mut arrays.body_inertia).skip(1) {
         *mass *= scale;
@@ -281,16 +281,17 @@ fn scale_masses(context: &Context, arrays: &mut Arrays) {
 
 fn subtree_masses(arrays: &mut Arrays) {
     arrays.body_subtreemass = arrays.body_mass.clone();
+    // children come after their parents, so a body's sum is complete when it is added to its parent's
     for body in (1..arrays.body_mass.len()).rev() {
         arrays.body_subtreemass[arrays.body_parentid[body]] += arrays.body_subtreemass[body];
     }
 }
 
-/// Checks that what moves as one has mass and inertia, without which the joint-space inertia is singular.
+/// Checks that bodies that move together have mass and inertia, without which the joint-space inertia is singular.
 fn check_moving_masses(
     context: &Context,
     document: &Document,
-    places: &[Place],
+    places: &[KeptBody],
     arrays: &Arrays,
 ) -> Result<(), LoadError> {
     let mut heavy = vec![false; arrays.body_mass.len()];
@@ -307,12 +308,12 @@ fn check_moving_masses(
     Ok(())
 }
 
-/// Returns the pose of a copy of what a `<replicate>` holds; `own` are the positions of the frames before it. As in MuJoCo 3.3.0 the step
+/// Returns the pose of a copy of a `<replicate>`; `own` are the positions of the frames before it. As in MuJoCo 3.3.0 the step
 /// to a copy is turned as the copy two before it is, and its own turn is that of all steps at once.
 pub(super) fn copied(
     context: &Context,
     frame: &BodyFrame,
-    copy: Copied,
+    copy: ReplicaIndex,
     own: &[Vec3],
 ) -> Result<(Vec3, Quat), LoadError> {
     let turned = |times: usize| {
@@ -320,7 +321,7 @@ pub(super) fn copied(
         if let Orientation::Euler(angles) = &mut step.orientation {
             angles.iter_mut().for_each(|angle| *angle *= times as f64);
         }
-        quat_of(context, frame.at, &step)
+        context.quat_of(frame.at, &step)
     };
     let pos = match copy.previous {
         Some(previous) => add(

@@ -1,6 +1,5 @@
 //! Compiles cameras and lights.
 
-use super::body::quat_of;
 use super::context::{Context, Ids};
 use super::geometry::{EPS, normalize};
 use crate::document::{Camera, Light};
@@ -26,7 +25,7 @@ pub(super) fn compile_camera(
         .cam_targetbodyid
         .push(camera.target.as_ref().map(find).transpose()?);
     arrays.cam_bodyid.push(body);
-    let quat = quat_of(context, camera.at, &camera.frame)?;
+    let quat = context.quat_of(camera.at, &camera.frame)?;
     let (pos, quat) = context.placed(camera.within, camera.frame.pos, quat);
     arrays.cam_pos.push(pos);
     arrays.cam_quat.push(quat);
@@ -81,7 +80,7 @@ fn optics(context: &Context, camera: &Camera, znear: f64) -> Result<(f64, [f64; 
     }
     let (value, want) = (camera.fovy, "below 180 degrees");
     if camera.sensorsize == [0.0; 2] {
-        // what MuJoCo writes where nothing is given
+        // MuJoCo's value if none is given
         let near = single(znear);
         return if value < 180.0 {
             Ok((value, [near, near, 0.0, 0.0]))

@@ -2,9 +2,10 @@
 
 use std::collections::BTreeMap;
 
-use crate::compile::hfield::hfield_name;
-use crate::compile::mesh::mesh_name;
-use crate::document::{Compiler, Document, Tri};
+use super::asset_name::asset_name;
+use super::geometry::orientation;
+use crate::assets::{AssetError, AssetSource};
+use crate::document::{AutoBool, Compiler, Document, Frame};
 use crate::error::{ErrorKind, LoadError};
 use crate::math::{Quat, Vec3, add, mat_vec, quat_mul, quat_rotate, quat_to_mat};
 use crate::model::{Arrays, JointType};
@@ -63,21 +64,21 @@ pub(super) struct Context<'a> {
     pub frames: Vec<(Vec3, Quat)>,
 }
 
-/// The length that user data have on all elements of a kind.
-pub(super) struct User {
-    /// The attribute of `<size>` that says it.
+/// The length of the user data of all elements of a kind.
+pub(super) struct UserDataSize {
+    /// The attribute of `<size>` that sets it.
     attribute: &'static str,
     length: usize,
 }
 
-impl User {
-    /// Takes the length that is given, else that of the longest of `users`.
+impl UserDataSize {
+    /// Takes the given length, or the length of the longest of `users`.
     pub fn new<'a>(attribute: &'static str, given: Option<usize>, users: impl Iterator<Item = &'a Vec<f64>>) -> Self {
         let length = given.unwrap_or_else(|| users.map(Vec::len).max().unwrap_or(0));
         Self { attribute, length }
     }
 
-    /// Returns user data at that length, with zeros behind them; more is an error.
+    /// Returns user data padded with zeros to that length; longer data are an error.
     pub fn of(&self, context: &Context, at: usize, user: &[f64]) -> Result<Vec<f64>, LoadError> {
         if user.len() > self.length {
             let (attribute, count) = (self.attribute, user.len());
@@ -90,7 +91,7 @@ impl User {
 }
 
 impl Context<'_> {
-    /// Returns the pose in its body of what stands `within` a frame.
+    /// Transforms a pose from the frame that an element is `within` to its body.
     pub fn placed(&self, within: Option<usize>, pos: Vec3, quat: Quat) -> (Vec3, Quat) {
         match within {
             None => (pos, quat),
@@ -98,7 +99,7 @@ impl Context<'_> {
         }
     }
 
-    /// Returns where in its body a point is that stands `within` a frame.
+    /// Transforms a point from the frame that an element is `within` to its body.
     pub fn point(&self, within: Option<usize>, point: Vec3) -> Vec3 {
         match within {
             None => point,
@@ -110,7 +111,7 @@ impl Context<'_> {
         }
     }
 
-    /// Returns the direction in its body of one that stands `within` a frame.
+    /// Transforms a direction from the frame that an element is `within` to its body.
     pub fn direction(&self, within: Option<usize>, direction: Vec3) -> Vec3 {
         match within {
             None => direction,
@@ -118,12 +119,42 @@ impl Context<'_> {
         }
     }
 
+    /// Returns the path in the source of a file in a folder that the document names. An included file may have it beside itself, if it is
+    /// not in the folder `probed`. The source must have it.
+    pub fn asset_path(
+        &self,
+        at: usize,
+        file: &str,
+        [folder, probed]: [&str; 2],
+        source: &dyn AssetSource,
+    ) -> Result<String, LoadError> {
+        let path = if self.settings().strippath {
+            // documents written on Windows have backslashes
+            let own = file.rsplit(['/', '\\']).next().unwrap_or(file);
+            self.tree.named_file(at, own, folder, None, source)
+        } else {
+            self.tree.named_file(at, file, folder, Some(probed), source)
+        };
+        let path = path.map_err(|e| self.error(at, e))?;
+        // checked before it is read, so that the error names the element
+        if source.contains(&path) {
+            Ok(path)
+        } else {
+            Err(self.error(at, AssetError::NotFound(path)))
+        }
+    }
+
+    /// Returns the orientation of an element's frame.
+    pub fn quat_of(&self, at: usize, frame: &Frame) -> Result<Quat, LoadError> {
+        orientation(&frame.orientation, self.compiler(at)).map_err(|message| self.invalid(at, message))
+    }
+
     /// Returns the settings of the document itself.
     pub fn settings(&self) -> &Compiler {
         &self.compilers[0]
     }
 
-    /// Returns the settings that hold for an element: those of the model that it stands in.
+    /// Returns the compiler settings of an element: those of the model that it was read from.
     pub fn compiler(&self, at: usize) -> &Compiler {
         &self.compilers[self.tree.model_of(at)]
     }
@@ -143,7 +174,7 @@ impl Context<'_> {
         self.folder(at, |compiler| &compiler.texturedir)
     }
 
-    /// Returns a folder that the model says in which an element stands, or else, as in MuJoCo, the model that names this one.
+    /// Returns a folder that the model of an element sets, or, as in MuJoCo, the next model around it that sets one.
     fn folder(&self, at: usize, folder: fn(&Compiler) -> &String) -> &str {
         let mut model = Some(self.tree.model_of(at));
         while let Some(one) = model {
@@ -160,7 +191,7 @@ impl Context<'_> {
         self.tree.error(at, kind)
     }
 
-    /// Checks the number of elements of a kind so far, the last of which is at `at`.
+    /// Checks the number of elements of a kind so far. The last one is at `at`.
     pub fn within(&self, at: usize, what: &'static str, limit: usize, found: usize) -> Result<(), LoadError> {
         if found > limit {
             Err(self.error(at, ErrorKind::TooMuch { what, limit }))
@@ -178,14 +209,14 @@ impl Context<'_> {
         &self,
         at: usize,
         attribute: &'static str,
-        limited: Tri,
+        limited: AutoBool,
         range: [f64; 2],
     ) -> Result<bool, LoadError> {
         let proper = range[0] < range[1];
         match limited {
-            Tri::No => Ok(false),
-            Tri::Yes if proper => Ok(true),
-            Tri::Yes => {
+            AutoBool::No => Ok(false),
+            AutoBool::Yes if proper => Ok(true),
+            AutoBool::Yes => {
                 let want = "greater than the lower end of the range";
                 Err(self.error(
                     at,
@@ -196,9 +227,10 @@ impl Context<'_> {
                     },
                 ))
             }
-            Tri::Auto if self.compiler(at).autolimits => Ok(proper),
-            Tri::Auto if range == [0.0; 2] => Ok(false),
-            Tri::Auto => Err(self.invalid(
+            // MuJoCo takes a range that is the wrong way round for none
+            AutoBool::Auto if self.compiler(at).autolimits => Ok(proper),
+            AutoBool::Auto if range == [0.0; 2] => Ok(false),
+            AutoBool::Auto => Err(self.invalid(
                 at,
                 match attribute {
                     "ctrlrange" => "a ctrlrange is given, but autolimits is off: set ctrllimited to true or false",
@@ -214,7 +246,7 @@ impl Context<'_> {
     }
 }
 
-/// Returns a reference, where it names something: an empty one is none.
+/// Returns a reference, or `None` if it is empty.
 pub(super) fn named(reference: &Option<String>) -> Option<&String> {
     reference.as_ref().filter(|name| !name.is_empty())
 }
@@ -240,6 +272,7 @@ impl Ids {
         check_unreferenced(tree, document)?;
         let bodies = &document.bodies;
         let joints = bodies.iter().flat_map(|b| &b.joints).map(|j| (j.at, &j.name));
+        // geoms that `discardvisual` leaves out have no id
         let geoms = bodies.iter().flat_map(|b| &b.geoms).filter(|g| !g.left_out);
         let geoms = geoms.map(|g| (g.at, &g.name));
         let sites = bodies.iter().flat_map(|b| &b.sites).map(|s| (s.at, &s.name));
@@ -247,13 +280,13 @@ impl Ids {
         let hfield_names = document
             .hfields
             .iter()
-            .map(|hfield| hfield_name(tree, hfield))
+            .map(|hfield| asset_name(tree, hfield.at, &hfield.name, hfield.file.as_deref()))
             .collect::<Result<Vec<_>, _>>()?;
         let hfields = document.hfields.iter().zip(&hfield_names).map(|(h, name)| (h.at, name));
         let mesh_names = document
             .meshes
             .iter()
-            .map(|mesh| mesh_name(tree, mesh))
+            .map(|mesh| asset_name(tree, mesh.at, &mesh.name, mesh.file.as_deref()))
             .collect::<Result<Vec<_>, _>>()?;
         let meshes = document.meshes.iter().zip(&mesh_names).map(|(m, name)| (m.at, name));
         let textures = textures.iter().zip(&arrays.textures).map(|(t, m)| (t.at, &m.name));

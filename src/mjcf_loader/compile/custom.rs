@@ -2,8 +2,8 @@
 
 use super::context::{Context, Ids};
 use super::geometry::normalize;
-use crate::attached::MovedKey;
-use crate::custom::{Key, Named, TupleElement};
+use crate::attachment::AttachedKeyframe;
+use crate::custom::{Key, TupleElement, TupleObject};
 use crate::document::Document;
 use crate::error::{ErrorKind, LoadError};
 use crate::math::{Quat, Vec3, quat_at, quat_normalize};
@@ -48,21 +48,21 @@ pub(super) fn compile_custom(
     Ok(())
 }
 
-/// Checks that there is what an element of a tuple names.
+/// Checks that the element that a tuple names exists.
 fn check_element(context: &Context, element: &TupleElement, ids: &Ids) -> Result<(), LoadError> {
     let names = match element.objtype {
-        Some(Named::Body) => &ids.body,
-        Some(Named::Joint) => &ids.joint,
-        Some(Named::Geom) => &ids.geom,
-        Some(Named::Site) => &ids.site,
-        Some(Named::Camera) => &ids.camera,
-        Some(Named::Mesh) => &ids.mesh,
-        Some(Named::HField) => &ids.hfield,
-        Some(Named::Texture) => &ids.texture,
-        Some(Named::Material) => &ids.material,
-        Some(Named::Tendon) => &ids.tendon,
-        Some(Named::Actuator) => &ids.actuator,
-        Some(Named::Other) | None => return Ok(()),
+        Some(TupleObject::Body) => &ids.body,
+        Some(TupleObject::Joint) => &ids.joint,
+        Some(TupleObject::Geom) => &ids.geom,
+        Some(TupleObject::Site) => &ids.site,
+        Some(TupleObject::Camera) => &ids.camera,
+        Some(TupleObject::Mesh) => &ids.mesh,
+        Some(TupleObject::HField) => &ids.hfield,
+        Some(TupleObject::Texture) => &ids.texture,
+        Some(TupleObject::Material) => &ids.material,
+        Some(TupleObject::Tendon) => &ids.tendon,
+        Some(TupleObject::Actuator) => &ids.actuator,
+        Some(TupleObject::Other) | None => return Ok(()),
     };
     names
         .find(context.tree, element.at, "objname", &element.objname)
@@ -111,8 +111,13 @@ pub(super) fn compile_keys(context: &Context, document: &Document, arrays: &mut 
     Ok(())
 }
 
-/// Compiles a keyframe that came along with bodies or copies: what it does not say is as in `qpos0`.
-fn moved_key(context: &Context, key: &MovedKey, document: &Document, arrays: &Arrays) -> Result<Keyframe, LoadError> {
+/// Compiles a keyframe of attached or copied bodies. Values that it does not give are those of `qpos0`.
+fn moved_key(
+    context: &Context,
+    key: &AttachedKeyframe,
+    document: &Document,
+    arrays: &Arrays,
+) -> Result<Keyframe, LoadError> {
     let mut whole = Key {
         at: key.at,
         name: key.name.clone(),

@@ -1,15 +1,15 @@
-//! What is only drawn: a document may leave it out.
+//! Leaves out visual geoms and unused assets (`discardvisual`).
 
 use std::collections::BTreeSet;
 
 use super::context::Names;
-use crate::custom::Named;
+use crate::custom::TupleObject;
 use crate::document::{Document, Geom};
 use crate::error::{ErrorKind, LoadError};
 use crate::math::order;
 use crate::model::{Arrays, GeomType, ObjType};
-use crate::relation::Along;
-use crate::sensor::{FrameOf, Object};
+use crate::relation::TendonElements;
+use crate::sensor::{FrameObject, Object};
 use crate::xml::Tree;
 
 const MATERIAL: &str = "discardvisual=\"true\" leaves out all materials, and MuJoCo then finds none but those of geoms: remove this material";
@@ -50,7 +50,7 @@ pub(crate) fn leave_out(tree: &Tree, document: &mut Document) -> Result<(), Load
         return Err(tree.error(at, ErrorKind::Invalid(MATERIAL)));
     }
     let mut listed = document.tuples.iter().flat_map(|tuple| &tuple.elements);
-    if let Some(element) = listed.find(|element| element.objtype == Some(Named::Mesh)) {
+    if let Some(element) = listed.find(|element| element.objtype == Some(TupleObject::Mesh)) {
         return Err(tree.error(element.at, ErrorKind::Invalid(MESH)));
     }
     check_references(tree, document)
@@ -61,13 +61,13 @@ fn named(document: &Document) -> BTreeSet<String> {
     let pairs = document.pairs.iter().flat_map(|pair| [&pair.geom1, &pair.geom2]);
     let along = document.tendons.iter().flat_map(|tendon| &tendon.path);
     let wrapped = along.filter_map(|along| match along {
-        Along::Geom(around) => Some(&around.geom),
+        TendonElements::Geom(around) => Some(&around.geom),
         _ => None,
     });
     let listed = document.tuples.iter().flat_map(|tuple| &tuple.elements);
-    let listed = listed.filter(|element| element.objtype == Some(Named::Geom));
+    let listed = listed.filter(|element| element.objtype == Some(TupleObject::Geom));
     let sensed = document.sensors.iter().filter_map(|sensor| match &sensor.object {
-        Object::Frame(of, _) if of.objtype == FrameOf::Geom => Some(&of.objname),
+        Object::Frame(of, _) if of.objtype == FrameObject::Geom => Some(&of.objname),
         Object::User(of) if of.objtype == Some(ObjType::Geom) => of.objname.as_ref(),
         Object::Between(between) => between.geom1.as_ref(),
         _ => None,
@@ -87,7 +87,7 @@ fn check_references(tree: &Tree, document: &Document) -> Result<(), LoadError> {
         .any(|geom| geom.left_out);
     for sensor in &document.sensors {
         let reference = match &sensor.object {
-            Object::Frame(_, frame) if frame.reftype == Some(FrameOf::Geom) => frame.refname.as_ref(),
+            Object::Frame(_, frame) if frame.reftype == Some(FrameObject::Geom) => frame.refname.as_ref(),
             Object::Between(between) => between.geom2.as_ref(),
             _ => None,
         };
@@ -98,7 +98,7 @@ fn check_references(tree: &Tree, document: &Document) -> Result<(), LoadError> {
     Ok(())
 }
 
-/// Drops meshes of which there is no geom.
+/// Drops meshes without a geom.
 pub(super) fn drop_meshes(arrays: &mut Arrays) {
     let of_mesh = |kind: GeomType, id: Option<usize>| id.filter(|_| kind != GeomType::HField);
     let geoms = arrays.geom_type.iter().zip(&arrays.geom_dataid);

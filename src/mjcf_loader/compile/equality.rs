@@ -6,8 +6,8 @@ use crate::math::{Quat, Vec3, quat_conj, quat_mul, quat_normalize};
 use crate::model::{Arrays, EqualityKind};
 use crate::relation::{Ends, Equality, EqualityElements, JointEquality, TendonEquality, WeldEquality};
 
-/// Compiles an equality. What bodies have of each other at `qpos0` needs kinematics: until then the point of a connection in its second
-/// body is its origin, and the quaternion of a weld without a pose of its own is zero.
+/// Compiles an equality. Relative poses of bodies at `qpos0` need kinematics. Until those run, the anchor of a connection in its second body is
+/// the origin, and a weld without `relpose` has a quaternion of zeros.
 pub(super) fn compile_equality(
     context: &Context,
     equality: &Equality,
@@ -34,7 +34,7 @@ pub(super) fn compile_equality(
     Ok(())
 }
 
-/// What an equality's names are looked up in.
+/// The tables in which the names of an equality are looked up.
 struct Scope<'a> {
     context: &'a Context<'a>,
     ids: &'a Ids,
@@ -43,7 +43,7 @@ struct Scope<'a> {
     at: usize,
 }
 
-/// What a connection or a weld holds together.
+/// The two bodies or sites that a connection or a weld holds together.
 enum Pair {
     Bodies([usize; 2]),
     /// Sites, and the bodies that they are on.
@@ -123,12 +123,12 @@ impl Scope<'_> {
         })
     }
 
-    /// Returns where sites are in their bodies.
+    /// Returns the positions of sites in their bodies.
     fn places(&self, sites: [usize; 2]) -> [Vec3; 2] {
         sites.map(|site| self.arrays.site_pos[site])
     }
 
-    /// Finds what is held together; `posed`, whether a pose of bodies is given.
+    /// Finds the two bodies or sites. `posed` tells whether a relative pose of bodies is given.
     fn pair(&self, ends: &Ends, posed: bool) -> Result<Pair, LoadError> {
         let (context, at) = (self.context, self.at);
         let of_bodies = ends.body1.is_some() || ends.body2.is_some() || ends.anchor.is_some() || posed;
@@ -136,7 +136,7 @@ impl Scope<'_> {
             (None, None, Some(body1)) => {
                 let find = |attribute, name| self.ids.body.find(context.tree, at, attribute, name);
                 let body1 = find("body1", body1)?;
-                // what is not named is the world
+                // a body that is not named is the world
                 let body2 = ends.body2.as_ref().map_or(Ok(0), |name| find("body2", name))?;
                 if body1 == body2 {
                     return Err(context.invalid(at, "a body cannot be held by itself"));
@@ -158,9 +158,10 @@ impl Scope<'_> {
     }
 }
 
-/// Returns the position and the orientation of a weld's pose; zeros where it is to be that at `qpos0`.
+/// Returns position and orientation of a weld's relative pose; zeros if it is the pose at `qpos0`.
 fn pose_of(relpose: Option<[f64; 7]>) -> (Vec3, Quat) {
     match relpose.unwrap_or_default() {
+        // a quaternion of zeros is MuJoCo's default, and means the pose at `qpos0`, whatever the position is
         [_, _, _, 0.0, 0.0, 0.0, 0.0] => ([0.0; 3], [0.0; 4]),
         [x, y, z, quat @ ..] => ([x, y, z], quat_normalize(quat)),
     }

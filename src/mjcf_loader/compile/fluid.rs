@@ -1,4 +1,4 @@
-//! How a medium acts on a geom that stands for an ellipsoid.
+//! Coefficients of the forces of a medium on a geom by the ellipsoid model.
 
 use std::f64::consts::PI;
 
@@ -62,7 +62,7 @@ fn resistance([x, y, z]: Vec3) -> f64 {
     sum * x2
 }
 
-/// Returns MuJoCo's `geom_fluid` of a geom: that it stands for an ellipsoid, its coefficients, and the volumes and moments of the
+/// Returns MuJoCo's `geom_fluid` of a geom: a mark that it has the ellipsoid model, its coefficients, and the volumes and moments of the
 /// medium that move with it.
 pub(super) fn fluid(kind: GeomType, size: &Vec3, coef: [f64; 5]) -> [f64; 12] {
     let [x, y, z] = match kind {

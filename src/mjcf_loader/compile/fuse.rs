@@ -1,43 +1,43 @@
-//! Where bodies stand: bodies without joints become part of what carries them where the document asks for it.
+//! Fuses bodies without joints with their parents, if the document asks for it (`<compiler fusestatic>`).
 
-use super::body::quat_of;
 use super::context::Context;
 use super::geometry::{Solid, merge};
 use crate::document::Document;
 use crate::error::LoadError;
 use crate::math::{MINVAL, Quat, Vec3, add, quat_mul, quat_rotate};
 
-/// A body that stays one.
-pub(super) struct Place {
-    /// Its place in the document.
+/// A body that is not fused with its parent.
+pub(super) struct KeptBody {
+    /// Its index in the document.
     pub body: usize,
-    /// The id of the body that carries it, and its pose in that.
+    /// The id of its parent, and its pose in the parent's frame.
     pub parent: usize,
     pub pos: Vec3,
     pub quat: Quat,
-    /// The bodies that are fused with it, in their order.
-    pub fused: Vec<Fused>,
+    /// The bodies that are fused with it, in document order.
+    pub fused: Vec<FusedBody>,
 }
 
-/// A body that is fused with another one.
-pub(super) struct Fused {
-    /// Its place in the document.
+/// A body that is fused with an ancestor.
+pub(super) struct FusedBody {
+    /// Its index in the document.
     pub body: usize,
-    /// Its pose in the other.
+    /// Its pose in the ancestor's frame.
     pos: Vec3,
     quat: Quat,
 }
 
-impl Fused {
-    /// Takes poses in the body to that with which it is fused.
+impl FusedBody {
+    /// Transforms poses from the body's frame to the ancestor's.
     pub fn carry(&self, pos: &mut [Vec3], quat: &mut [Quat]) {
         for (pos, quat) in pos.iter_mut().zip(quat) {
             (*pos, *quat) = self.seen(*pos, *quat);
         }
     }
 
-    /// Returns the body with which it is fused, with its mass.
+    /// Returns the ancestor's mass properties with those of the body added.
     pub fn added_to(&self, whole: Solid, mut own: Solid) -> Result<Solid, &'static str> {
+        // a body of markers alone: two bodies without mass cannot be merged
         if own.mass < MINVAL {
             return Ok(whole);
         }
@@ -50,26 +50,28 @@ impl Fused {
     }
 }
 
-/// Returns the bodies that stay, in their order.
-pub(super) fn places(context: &Context, document: &Document) -> Result<Vec<Place>, LoadError> {
+/// Returns the bodies that remain, in document order.
+pub(super) fn places(context: &Context, document: &Document) -> Result<Vec<KeptBody>, LoadError> {
     let fuses = fuses(document);
-    let mut places: Vec<Place> = Vec::with_capacity(document.bodies.len());
-    // the id with which each body ends, and if it is fused its place among what is fused with that
+    let mut places: Vec<KeptBody> = Vec::with_capacity(document.bodies.len());
+    // for each body of the document: the id of the body that it becomes or is fused with, and in the second case its index among those
     let mut ends: Vec<(usize, Option<usize>)> = Vec::with_capacity(document.bodies.len());
     for (at, body) in document.bodies.iter().enumerate() {
-        let quat = quat_of(context, body.at, &body.frame)?;
+        let quat = context.quat_of(body.at, &body.frame)?;
         let (mut pos, mut quat) = context.placed(body.within, body.frame.pos, quat);
+        // the world has itself as its parent, and no entry yet
         let (parent, among) = ends.get(body.parent).copied().unwrap_or((0, None));
+        // a child of a fused body hangs on the ancestor that remains, so its pose is composed with that of its parent
         if let Some(carrier) = among.map(|k| &places[parent].fused[k]) {
             (pos, quat) = carrier.seen(pos, quat);
         }
         if fuses && at > 0 && !body.mocap && body.joints.is_empty() {
             let fused = &mut places[parent].fused;
             ends.push((parent, Some(fused.len())));
-            fused.push(Fused { body: at, pos, quat });
+            fused.push(FusedBody { body: at, pos, quat });
         } else {
             ends.push((places.len(), None));
-            places.push(Place {
+            places.push(KeptBody {
                 body: at,
                 parent,
                 pos,
@@ -81,8 +83,8 @@ pub(super) fn places(context: &Context, document: &Document) -> Result<Vec<Place
     Ok(places)
 }
 
-/// Tells whether bodies of a document are fused. As in MuJoCo 3.3.0 none is where there is an element of a kind that may name a body or what
-/// it carries, whatever it names, or a camera or a light.
+/// Tells whether bodies of a document are fused. As in MuJoCo 3.3.0, none is if the document has a camera, a light, or any element of a kind
+/// that may refer to a body or to one of its elements, whatever it refers to.
 fn fuses(d: &Document) -> bool {
     let named = [
         d.skins.len(),

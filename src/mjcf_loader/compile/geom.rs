@@ -1,6 +1,5 @@
-//! Compiles geoms: shapes, and what they fill.
+//! Compiles geoms: shape, pose, volume and mass.
 
-use super::body::quat_of;
 use super::context::{Context, Ids, named};
 use super::fluid::fluid;
 use super::geometry::{EPS, Solid, bounding_box, bounding_radius, inertia, segment, size_count, volume};
@@ -22,7 +21,7 @@ pub(super) fn place(
     fromto: Option<[f64; 6]>,
 ) -> Result<(Vec3, Quat, Vec3), LoadError> {
     let Some(fromto) = fromto else {
-        return Ok((frame.pos, quat_of(context, at, frame)?, size));
+        return Ok((frame.pos, context.quat_of(at, frame)?, size));
     };
     if frame.pos != [0.0; 3] {
         return Err(context.invalid(at, "fromto and a pos that is not 0 are mutually exclusive"));
@@ -84,6 +83,7 @@ pub(super) fn compile_geom(
     arrays.geom_type.push(geom.kind);
     if let Some(id) = hfield {
         let [x, y, top, base] = arrays.hfields[id].size;
+        // MuJoCo's size of the geom: a box that has the height of the base and half that of the terrain
         size = [x, y, 0.25 * top + 0.5 * base];
     }
     arrays.geom_size.push(size);
@@ -131,6 +131,7 @@ fn solid(context: &Context, geom: &Geom, extent: &Extent, (pos, quat): (Vec3, Qu
         extent.volume
     };
     let mass = match geom.mass {
+        // MuJoCo turns a mass into a density, and a geom without volume has none
         Some(mass) if volume > EPS => mass,
         Some(_) => 0.0,
         None => geom.density * volume,
@@ -144,18 +145,18 @@ fn solid(context: &Context, geom: &Geom, extent: &Extent, (pos, quat): (Vec3, Qu
     })
 }
 
-/// Space that a geom fills.
+/// The space that a geom fills.
 struct Extent {
     aabb: [f64; 6],
     volume: f64,
     /// The size by which inertia is computed.
     inertia_box: Vec3,
-    /// Radius of the sphere around it, where that does not follow from its size.
+    /// Radius of its bounding sphere, if that does not follow from its size.
     radius: Option<f64>,
 }
 
 impl Extent {
-    /// Returns that of a height field, which weighs as much as a box of its mean height.
+    /// Returns the extent of a height field, whose mass is that of a box of its mean height.
     fn of_hfield(hfield: &HField) -> Self {
         let [x, y, top, base] = hfield.size;
         let size = [x, y, 0.25 * top + 0.5 * base];
@@ -167,7 +168,7 @@ impl Extent {
         }
     }
 
-    /// Returns that of a mesh, where the geom is one, else that of its shape, to which one may have been fitted.
+    /// Returns the extent of a mesh geom, or of a primitive shape, which may have been fitted to a mesh.
     fn of(kind: GeomType, size: &Vec3, mesh: Option<usize>, arrays: &Arrays) -> Self {
         match mesh.filter(|_| kind == GeomType::Mesh).map(|id| &arrays.meshes[id]) {
             Some(mesh) => {
@@ -201,7 +202,7 @@ fn hfield_of(context: &Context, geom: &Geom, ids: &Ids) -> Result<Option<usize>,
     }
 }
 
-/// Puts a geom where its mesh is, and gives it the size of the mesh, or that of the shape that is fitted to it. Returns the mesh.
+/// Moves a geom to the frame of its mesh, and sets its size to that of the mesh or of the shape that is fitted to it. Returns the mesh.
 fn place_mesh(
     context: &Context,
     geom: &Geom,
@@ -222,11 +223,12 @@ fn place_mesh(
     let mesh = &mut arrays.meshes[id];
     if geom.kind == GeomType::Mesh {
         let [low, high] = mesh.bounds;
+        // a box around the origin, as MuJoCo sizes mesh geoms; their bounding boxes are tighter
         *size = std::array::from_fn(|k| low[k].abs().max(high[k].abs()));
     } else {
         let fitted = fit(geom.kind, mesh, context.compiler(geom.at).fitaabb, geom.fitscale)
             .ok_or_else(|| context.invalid(geom.at, "a plane cannot be fitted to a mesh"))?;
-        // what the shape does not use stays
+        // entries that the shape does not use keep what the document gives
         let used = size_count(geom.kind);
         size[..used].copy_from_slice(&fitted.size[..used]);
         // MuJoCo moves the mesh itself, for all geoms that follow

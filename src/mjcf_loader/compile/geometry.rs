@@ -24,6 +24,7 @@ pub(crate) fn normalize<const N: usize>(vector: &mut [f64; N]) -> f64 {
         return 0.0;
     }
     let length = square.sqrt();
+    // dividing a unit vector by its length would change its last bits
     if (length - 1.0).abs() > EPS {
         for value in vector.iter_mut() {
             *value /= length;
@@ -52,6 +53,7 @@ pub(super) fn orientation(written: &Orientation, compiler: &Compiler) -> Result<
                 return Err("the x axis of xyaxes is too short");
             }
             let along = x[0] * y[0] + x[1] * y[1] + x[2] * y[2];
+            // Gram and Schmidt: x is taken as it is, and y made perpendicular
             for k in 0..3 {
                 y[k] -= x[k] * along;
             }
@@ -96,6 +98,7 @@ pub(super) fn orientation(written: &Orientation, compiler: &Compiler) -> Result<
 pub(super) fn z_to_quat(direction: Vec3) -> Quat {
     let mut axis = cross([0.0, 0.0, 1.0], direction);
     let sine = normalize(&mut axis);
+    // along z, or against it: any axis across z will do, and MuJoCo takes x
     if sine < 1e-10 {
         axis = [1.0, 0.0, 0.0];
     }
@@ -153,7 +156,7 @@ pub(super) fn segment(fromto: &[f64; 6]) -> (Vec3, Quat, f64) {
     ([0.5 * (a0 + b0), 0.5 * (a1 + b1), 0.5 * (a2 + b2)], quat, half)
 }
 
-/// Returns how many entries of `size` a shape needs.
+/// Returns the number of entries of `size` that a shape uses.
 pub(super) fn size_count(kind: GeomType) -> usize {
     match kind {
         GeomType::Sphere => 1,
@@ -190,6 +193,7 @@ pub(super) fn inertia(kind: GeomType, size: &Vec3, mass: f64) -> Vec3 {
         GeomType::Sphere => [2.0 * mass * a * a / 5.0; 3],
         GeomType::Capsule => {
             let height = 2.0 * b;
+            // by volume: both ends make a sphere, 4/3 pi a^3, and the cylinder has pi a^2 height
             let sphere_mass = mass * 4.0 * a / (4.0 * a + 3.0 * height);
             let cylinder_mass = mass - sphere_mass;
             let across = cylinder_mass * (3.0 * a * a + height * height) / 12.0;
@@ -235,6 +239,7 @@ pub(super) fn bounding_box(kind: GeomType, size: &Vec3) -> [f64; 6] {
     let [a, b, c] = *size;
     match kind {
         GeomType::Plane => {
+            // all space below the plane
             let half = MAXVAL / 2.0;
             [0.0, 0.0, -half, MAXVAL, MAXVAL, half]
         }
@@ -298,6 +303,7 @@ pub(super) fn merge(solids: &[Solid]) -> Result<Solid, &'static str> {
         let own = turned_inertia(&solid.inertia, solid.quat);
         let moved = point_inertia(solid.mass, sub(solid.pos, pos));
         for k in 0..6 {
+            // one sum at a time, in MuJoCo's order; `+=` of a sum rounds differently
             total[k] = total[k] + own[k] + moved[k];
         }
     }

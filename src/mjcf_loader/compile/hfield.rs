@@ -1,8 +1,7 @@
 //! Compiles height fields.
 
+use super::asset_name::asset_name;
 use super::context::Context;
-use super::mesh::stem;
-use super::surface::asset_path;
 use crate::assets::AssetSource;
 use crate::document::Document;
 use crate::error::{ErrorKind, LoadError};
@@ -10,15 +9,6 @@ use crate::formats::heights::{HeightFormat, Heights};
 use crate::limits::Limits;
 use crate::mesh::HField;
 use crate::model;
-use crate::xml::Tree;
-
-/// Returns the name of a height field; one without a name is called after its file.
-pub(super) fn hfield_name(tree: &Tree, hfield: &HField) -> Result<String, LoadError> {
-    match stem(&hfield.name, hfield.file.as_deref()) {
-        "" => Err(tree.error(hfield.at, ErrorKind::MissingAttribute("name"))),
-        name => Ok(name.to_owned()),
-    }
-}
 
 /// Compiles the height fields, whose files are looked up in `source`. All together have as many heights as
 /// the limits allow for elements of meshes.
@@ -27,6 +17,7 @@ pub(super) fn compile_hfields(
     document: &Document,
     source: &dyn AssetSource,
 ) -> Result<Vec<model::HField>, LoadError> {
+    // all height fields together: each alone could be within the limits
     let mut limits = context.tree.limits.clone();
     let compile = |hfield| {
         let compiled = compile_hfield(context, hfield, source, &limits)?;
@@ -54,6 +45,7 @@ fn compile_hfield(
     if nrow < 2 || ncol < 2 {
         return invalid("a height field needs 2 rows and 2 columns at least");
     }
+    // MuJoCo scales heights to 0..1, and starts its search at these bounds
     let (mut low, mut high) = (1e10_f32, -1e10_f32);
     for &v in &data {
         (low, high) = (low.min(v), high.max(v));
@@ -64,11 +56,12 @@ fn compile_hfield(
             *v /= high - low;
         }
     }
+    // the difference of two finite numbers overflows
     if !data.iter().all(|v| v.is_finite()) {
         return invalid("the heights are too far from each other for single precision");
     }
     Ok(model::HField {
-        name: hfield_name(context.tree, hfield)?,
+        name: asset_name(context.tree, hfield.at, &hfield.name, hfield.file.as_deref())?,
         size: hfield.size,
         nrow,
         ncol,
@@ -76,7 +69,7 @@ fn compile_hfield(
     })
 }
 
-/// Reads the numbers in the document, whose first row is that of the greatest y.
+/// Reads the heights in the document. Its first row has the greatest y.
 fn from_numbers(hfield: &HField, limits: &Limits) -> Result<Heights, String> {
     let (nrow, ncol) = (hfield.nrow, hfield.ncol);
     let count = nrow.saturating_mul(ncol);
@@ -84,6 +77,7 @@ fn from_numbers(hfield: &HField, limits: &Limits) -> Result<Heights, String> {
     let data = if hfield.elevation.is_empty() {
         vec![0.0; count]
     } else if hfield.elevation.len() == count {
+        // documents begin with the row at the top of the page, the model's arrays with the lowest y
         let rows = hfield.elevation.chunks(ncol.max(1)).rev();
         rows.flatten().map(|&v| v as f32).collect()
     } else {
@@ -99,7 +93,7 @@ fn from_file(
     source: &dyn AssetSource,
     limits: &Limits,
 ) -> Result<Heights, LoadError> {
-    let path = asset_path(context, hfield.at, file, context.mesh_dirs(hfield.at), source)?;
+    let path = context.asset_path(hfield.at, file, context.mesh_dirs(hfield.at), source)?;
     let format = match &hfield.content_type {
         Some(content_type) => HeightFormat::of_content(content_type)
             .ok_or_else(|| context.invalid(hfield.at, "content_type must be image/png or image/vnd.mujoco.hfield"))?,

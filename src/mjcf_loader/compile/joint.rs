@@ -2,9 +2,9 @@
 
 use std::f64::consts::PI;
 
-use super::context::{Context, User};
+use super::context::{Context, UserDataSize};
 use super::geometry::{EPS, normalize};
-use crate::document::{Body, Joint, Tri};
+use crate::document::{AutoBool, Body, Joint};
 use crate::error::LoadError;
 use crate::math::{QUAT_ID, Vec3};
 use crate::model::{Arrays, JointType};
@@ -15,7 +15,7 @@ pub(super) fn compile_joints(
     body: &Body,
     id: usize,
     mut last: Option<usize>,
-    user: &User,
+    user: &UserDataSize,
     arrays: &mut Arrays,
 ) -> Result<Option<usize>, LoadError> {
     arrays.body_jntadr.push(arrays.jnt_name.len());
@@ -36,13 +36,13 @@ pub(super) fn compile_joints(
 }
 
 /// The place of a joint in its body.
-struct Mount {
+struct JointFrame {
     pos: Vec3,
     axis: Vec3,
     limited: bool,
 }
 
-impl Mount {
+impl JointFrame {
     /// Checks that the joint can be in the body, and returns where: free and ball joints have no axis of their own, and a free joint is
     /// at the origin.
     fn of(context: &Context, joint: &Joint, body: &Body, [body_id, parent]: [usize; 2]) -> Result<Self, LoadError> {
@@ -63,7 +63,7 @@ impl Mount {
             JointType::Ball => {
                 let pos = context.point(joint.within, joint.pos);
                 // any upper end will do: beyond a half turn nothing reaches it
-                let limited = joint.limited == Tri::Yes || limited()?;
+                let limited = joint.limited == AutoBool::Yes || limited()?;
                 if limited && joint.range[0] != 0.0 {
                     return invalid("the range of a ball joint must begin at 0");
                 }
@@ -102,7 +102,8 @@ fn compile_joint(
     }
     let turns = matches!(joint.kind, JointType::Hinge | JointType::Ball) && context.compiler(joint.at).degree;
     let angle = |value: f64| if turns { value * (PI / 180.0) } else { value };
-    let Mount { pos, axis, limited } = Mount::of(context, joint, body, [body_id, arrays.body_parentid[body_id]])?;
+    let JointFrame { pos, axis, limited } =
+        JointFrame::of(context, joint, body, [body_id, arrays.body_parentid[body_id]])?;
     arrays.jnt_name.push(joint.name.clone());
     arrays.jnt_type.push(joint.kind);
     arrays.jnt_bodyid.push(body_id);

@@ -2,6 +2,7 @@
 
 mod actuator;
 mod align;
+mod asset_name;
 mod body;
 mod camera;
 mod constraint;
@@ -22,11 +23,11 @@ mod skin;
 mod surface;
 mod tendon;
 
-use context::{Context, Ids, User};
+pub(super) use asset_name::stem;
+use context::{Context, Ids, UserDataSize};
 pub(super) use discard::leave_out;
 pub use geometry::bounding_radius;
 pub(super) use geometry::{frame_to_quat, normalize, volume};
-pub(super) use mesh::stem;
 
 use super::document::Document;
 use super::error::LoadError;
@@ -35,7 +36,7 @@ use crate::assets::AssetSource;
 use crate::math::Vec3;
 use crate::model::{Arrays, SameFrame};
 
-/// Compiles the document into everything but what needs dynamics. Images, meshes and heights are looked up in `source`, relative to the
+/// Compiles the document, except for the quantities that need dynamics. Images, meshes and heights are looked up in `source`, relative to the
 /// folders of the models that name them; images are not decoded. Returns the elements of the bodies beside it.
 pub(super) fn compile(
     tree: &Tree,
@@ -53,12 +54,12 @@ pub(super) fn compile(
         compilers: &document.compilers,
         frames: Vec::with_capacity(document.frames.len()),
     };
-    // poses in what the frames stand in
+    // poses in the frames around them
     let mut own: Vec<Vec3> = Vec::with_capacity(document.frames.len());
     for frame in &document.frames {
         let (pos, quat) = match frame.copy {
             Some(copy) => body::copied(&context, frame, copy, &own)?,
-            None => (frame.frame.pos, body::quat_of(&context, frame.at, &frame.frame)?),
+            None => (frame.frame.pos, context.quat_of(frame.at, &frame.frame)?),
         };
         own.push(pos);
         let pose = context.placed(frame.within, pos, quat);
@@ -85,7 +86,7 @@ pub(super) fn compile(
         equality::compile_equality(&context, equality, &ids, &mut arrays)?;
     }
     let users = document.tendons.iter().map(|tendon| &tendon.user);
-    let user = User::new("nuser_tendon", document.size.nuser_tendon, users);
+    let user = UserDataSize::new("nuser_tendon", document.size.nuser_tendon, users);
     for tendon in &document.tendons {
         tendon::compile_tendon(&context, tendon, &user, &ids, &mut arrays)?;
     }

@@ -1,10 +1,10 @@
 //! Compiles sensors.
 
-use super::context::{Context, Ids, User};
+use super::context::{Context, Ids, UserDataSize};
 use crate::document::Document;
 use crate::error::{ErrorKind, LoadError};
 use crate::model::{Arrays, DataType, GeomType, JointType, ObjType, SensorType};
-use crate::sensor::{Between, FrameOf, InFrame, InPicture, Object, OfFrame, OfUser, Sensor};
+use crate::sensor::{Between, FrameObject, InFrame, InPicture, Object, OfFrame, OfUser, Sensor};
 
 /// Compiles the sensors, whose values follow one another.
 pub(super) fn compile_sensors(
@@ -14,7 +14,7 @@ pub(super) fn compile_sensors(
     arrays: &mut Arrays,
 ) -> Result<(), LoadError> {
     let users = document.sensors.iter().map(|sensor| &sensor.user);
-    let users = User::new("nuser_sensor", document.size.nuser_sensor, users);
+    let users = UserDataSize::new("nuser_sensor", document.size.nuser_sensor, users);
     let mut adr = 0;
     for sensor in &document.sensors {
         let user = users.of(context, sensor.at, &sensor.user)?;
@@ -55,12 +55,17 @@ pub(super) fn compile_sensors(
 }
 
 /// An object by kind and id.
-type Sensed = (ObjType, Option<usize>);
+type SensedObject = (ObjType, Option<usize>);
 
-const NOTHING: Sensed = (ObjType::Unknown, None);
+const NOTHING: SensedObject = (ObjType::Unknown, None);
 
-/// Finds what a sensor measures, and in which frame.
-fn sensed(context: &Context, sensor: &Sensor, ids: &Ids, arrays: &Arrays) -> Result<(Sensed, Sensed), LoadError> {
+/// Finds the object of a sensor, and its reference frame.
+fn sensed(
+    context: &Context,
+    sensor: &Sensor,
+    ids: &Ids,
+    arrays: &Arrays,
+) -> Result<(SensedObject, SensedObject), LoadError> {
     let (tree, at) = (context.tree, sensor.at);
     let object = match &sensor.object {
         Object::Nothing => NOTHING,
@@ -119,15 +124,15 @@ fn frames(
     of: &OfFrame,
     within: &InFrame,
     ids: &Ids,
-) -> Result<(Sensed, Sensed), LoadError> {
+) -> Result<(SensedObject, SensedObject), LoadError> {
     let find = |kind, attribute, name: &str| {
         let tree = context.tree;
         Ok::<_, LoadError>(match kind {
-            FrameOf::Body => (ObjType::Body, Some(ids.body.find(tree, at, attribute, name)?)),
-            FrameOf::XBody => (ObjType::XBody, Some(ids.body.find(tree, at, attribute, name)?)),
-            FrameOf::Geom => (ObjType::Geom, Some(ids.geom.find(tree, at, attribute, name)?)),
-            FrameOf::Site => (ObjType::Site, Some(ids.site.find(tree, at, attribute, name)?)),
-            FrameOf::Camera => (ObjType::Camera, Some(ids.camera.find(tree, at, attribute, name)?)),
+            FrameObject::Body => (ObjType::Body, Some(ids.body.find(tree, at, attribute, name)?)),
+            FrameObject::XBody => (ObjType::XBody, Some(ids.body.find(tree, at, attribute, name)?)),
+            FrameObject::Geom => (ObjType::Geom, Some(ids.geom.find(tree, at, attribute, name)?)),
+            FrameObject::Site => (ObjType::Site, Some(ids.site.find(tree, at, attribute, name)?)),
+            FrameObject::Camera => (ObjType::Camera, Some(ids.camera.find(tree, at, attribute, name)?)),
         })
     };
     let object = find(of.objtype, "objname", &of.objname)?;
@@ -161,7 +166,7 @@ fn two(
     between: &Between,
     ids: &Ids,
     arrays: &Arrays,
-) -> Result<(Sensed, Sensed), LoadError> {
+) -> Result<(SensedObject, SensedObject), LoadError> {
     let find = |geom: &Option<String>, body: &Option<String>, [of_geom, of_body]: [&'static str; 2]| {
         Ok::<_, LoadError>(match (geom, body) {
             (Some(name), _) => (ObjType::Geom, Some(ids.geom.find(context.tree, at, of_geom, name)?)),
@@ -174,7 +179,7 @@ fn two(
     if first == second {
         return Err(context.invalid(at, "a sensor cannot be between something and itself"));
     }
-    let measured = |(kind, id): Sensed, g: usize| match kind {
+    let measured = |(kind, id): SensedObject, g: usize| match kind {
         ObjType::Body => Some(arrays.geom_bodyid[g]) == id,
         _ => Some(g) == id,
     };

@@ -1,4 +1,4 @@
-//! Shells: shapes of which only the surface has mass, by MuJoCo 3.3.0's formulas.
+//! Shells: shapes whose surface alone has mass, by MuJoCo 3.3.0's formulas.
 
 use std::f64::consts::PI;
 
@@ -72,7 +72,7 @@ fn ellipsoid([a, b, c]: Vec3, mass: f64) -> Vec3 {
     std::array::from_fn(|k| outer[k] - inner[k])
 }
 
-/// Returns the moments of the six sides of a box, of which two are across each axis.
+/// Returns the moments of the six sides of a box; two are across each axis.
 fn cuboid([a, b, c]: Vec3, mass: f64) -> Vec3 {
     let [x, y, z] = [2.0 * a, 2.0 * b, 2.0 * c];
     let areas = [x * y, y * z, z * x];

@@ -2,7 +2,6 @@
 
 use super::context::{Context, Ids, Names, named};
 use super::mesh::{indices, rows};
-use super::surface::asset_path;
 use crate::assets::AssetSource;
 use crate::document::Document;
 use crate::error::{ErrorKind, LoadError};
@@ -71,13 +70,13 @@ fn compile(context: &Context, skin: &Skin, file: SkinFile, ids: &Ids) -> Result<
     })
 }
 
-/// Reads the file of a skin, or what the document says in its place.
+/// Reads the file of a skin, or the data in the document.
 fn read(context: &Context, skin: &Skin, source: &dyn AssetSource) -> Result<SkinFile, LoadError> {
     let given = [skin.vertex.is_empty(), skin.face.is_empty(), skin.bones.is_empty()];
     match &skin.file {
         Some(_) if given.contains(&false) || !skin.texcoord.is_empty() => Err(context.invalid(skin.at, TWICE)),
         Some(file) => {
-            let path = asset_path(context, skin.at, file, context.mesh_dirs(skin.at), source)?;
+            let path = context.asset_path(skin.at, file, context.mesh_dirs(skin.at), source)?;
             let bytes = source.read(&path).map_err(|e| context.error(skin.at, e))?;
             SkinFile::read(&bytes).map_err(|error| {
                 let (file, message) = (Some(path), error.to_string());
@@ -88,7 +87,7 @@ fn read(context: &Context, skin: &Skin, source: &dyn AssetSource) -> Result<Skin
     }
 }
 
-/// Takes what the document itself says.
+/// Takes the data in the document.
 fn written(skin: &Skin) -> Result<SkinFile, &'static str> {
     let bones = skin.bones.iter().map(|bone| {
         let index = |&x: &f64| (x.fract() == 0.0 && (0.0..f64::from(u32::MAX)).contains(&x)).then_some(x as u32);

@@ -1,7 +1,7 @@
 //! Compiles textures and materials.
 
 use super::context::{Context, Ids};
-use crate::assets::{AssetError, AssetSource};
+use crate::assets::AssetSource;
 use crate::error::{ErrorKind, LoadError};
 use crate::formats::png::check_png;
 use crate::model::{self, Builtin, TextureType};
@@ -18,8 +18,8 @@ pub(super) fn compile_texture(
     let flat = texture.kind == TextureType::Flat2d;
     let builtin = texture.builtin != Builtin::None;
     let invalid = |message| Err(context.invalid(texture.at, message));
-    let path = |file: &String| asset_path(context, texture.at, file, [context.texturedir(texture.at); 2], source);
-    // a pattern has no images, whatever is named
+    let path = |file: &String| context.asset_path(texture.at, file, [context.texturedir(texture.at); 2], source);
+    // a pattern has no images; file names are ignored
     let named = |file: &Option<String>| file.as_ref().filter(|_| !builtin).map(path).transpose();
     let mut cube_files = [const { None }; 6];
     for (to, from) in cube_files.iter_mut().zip(&texture.cube_files) {
@@ -192,29 +192,6 @@ fn grid(context: &Context, texture: &surface::Texture) -> Result<([usize; 2], Ve
         },
     };
     Ok((size, layout.chars().map(face).collect::<Result<_, _>>()?))
-}
-
-/// Returns the path in the source of a file in a folder that the document names; an included file may have it beside itself, if it is
-/// not in the folder `probed`. The source must have it.
-pub(super) fn asset_path(
-    context: &Context,
-    at: usize,
-    file: &str,
-    [folder, probed]: [&str; 2],
-    source: &dyn AssetSource,
-) -> Result<String, LoadError> {
-    let path = if context.settings().strippath {
-        let own = file.rsplit(['/', '\\']).next().unwrap_or(file);
-        context.tree.named_file(at, own, folder, None, source)
-    } else {
-        context.tree.named_file(at, file, folder, Some(probed), source)
-    };
-    let path = path.map_err(|e| context.error(at, e))?;
-    if source.contains(&path) {
-        Ok(path)
-    } else {
-        Err(context.error(at, AssetError::NotFound(path)))
-    }
 }
 
 /// Returns the name of a texture; one without a name is called after its file, without directory and extension.

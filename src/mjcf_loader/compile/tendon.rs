@@ -1,9 +1,9 @@
 //! Compiles tendons.
 
-use super::context::{Context, Ids, User, named};
+use super::context::{Context, Ids, UserDataSize, named};
 use crate::error::{ErrorKind, LoadError};
 use crate::model::{Arrays, GeomType, Wrap};
-use crate::relation::{Along, Tendon};
+use crate::relation::{Tendon, TendonElements};
 use crate::settings::single;
 
 /// MuJoCo takes such a tendon, but lets its length depend on both coefficients and its force on the last alone.
@@ -23,7 +23,7 @@ const SITE_TWICE: &str = "the tendon names this site twice in a row";
 pub(super) fn compile_tendon(
     context: &Context,
     tendon: &Tendon,
-    user: &User,
+    user: &UserDataSize,
     ids: &Ids,
     arrays: &mut Arrays,
 ) -> Result<(), LoadError> {
@@ -74,7 +74,7 @@ pub(super) fn compile_tendon(
     compile_looks(context, tendon, ids, arrays)
 }
 
-/// Compiles what only changes pictures.
+/// Compiles the attributes that only change pictures.
 fn compile_looks(context: &Context, tendon: &Tendon, ids: &Ids, arrays: &mut Arrays) -> Result<(), LoadError> {
     let find = |name: &String| ids.material.find(context.tree, tendon.at, "material", name);
     let looks = &tendon.looks;
@@ -86,21 +86,21 @@ fn compile_looks(context: &Context, tendon: &Tendon, ids: &Ids, arrays: &mut Arr
 }
 
 /// Compiles an element that a tendon runs along.
-fn compile_wrap(context: &Context, along: &Along, ids: &Ids, arrays: &Arrays) -> Result<Wrap, LoadError> {
+fn compile_wrap(context: &Context, along: &TendonElements, ids: &Ids, arrays: &Arrays) -> Result<Wrap, LoadError> {
     let (tree, at) = (context.tree, along.at());
     Ok(match along {
-        Along::Joint(joint) => Wrap::Joint {
+        TendonElements::Joint(joint) => Wrap::Joint {
             // of a ball or free joint MuJoCo takes the first coordinate
             joint: ids.joint.find(tree, at, "joint", &joint.joint)?,
             coef: joint.coef,
         },
-        Along::Site(site) => Wrap::Site {
+        TendonElements::Site(site) => Wrap::Site {
             site: ids.site.find(tree, at, "site", &site.site)?,
         },
-        Along::Pulley(pulley) => Wrap::Pulley {
+        TendonElements::Pulley(pulley) => Wrap::Pulley {
             divisor: pulley.divisor,
         },
-        Along::Geom(wrapped) => {
+        TendonElements::Geom(wrapped) => {
             let geom = ids.geom.find(tree, at, "geom", &wrapped.geom)?;
             let side = wrapped.sidesite.as_ref().filter(|name| !name.is_empty());
             let side = side.map(|name| ids.site.find(tree, at, "sidesite", name)).transpose()?;
@@ -113,7 +113,7 @@ fn compile_wrap(context: &Context, along: &Along, ids: &Ids, arrays: &Arrays) ->
     })
 }
 
-/// Checks the order of what a spatial tendon runs along.
+/// Checks the order of the elements on the path of a spatial tendon.
 fn check_path(context: &Context, tendon: &Tendon, wrap: &[Wrap]) -> Result<(), LoadError> {
     let is_site = |k: usize| matches!(wrap.get(k), Some(Wrap::Site { .. }));
     let is_end = |k: usize| matches!(wrap.get(k), None | Some(Wrap::Pulley { .. }));

@@ -1,24 +1,31 @@
-//! `<attach>`: bodies of other models with all that refers to nothing else, as MuJoCo 3.3.0 takes them.
+//! `<attach>`: copies a body of another model, and the elements that refer to nothing outside it, as MuJoCo 3.3.0 does.
 
 use std::collections::BTreeSet;
 
-use super::super::attached::{Absent, Amount, ElementKind, Referring, hanging};
+use super::super::attached::{Reference, hanging};
+use super::super::attachment::{CopyCount, ElementKind, MissingReference};
 use super::super::compile::stem;
 use super::super::document::{Attach, Body, Document};
 use super::super::error::{ErrorKind, LoadError};
 use super::super::schema::Element;
 use super::super::table::Table;
 use super::super::xml::Tree;
-use super::content::Spot;
+use super::insertion::Insertion;
 use super::keys::{resize_keys, say_keys};
 use crate::math::order;
 
 const ABSENT: &str = "this refers to something that is not attached, by a name that another element of the document has, which MuJoCo 3.3.0 \
      may take for it: rename that, or attach the body that is meant";
 
-/// Puts a body of another model where the element stands.
-pub(super) fn attach_model(e: &Element, spot: Spot, tree: &Tree, document: &mut Document) -> Result<(), LoadError> {
+/// Copies a body of another model to where the element is.
+pub(super) fn attach_model(
+    e: &Element,
+    spot: Insertion,
+    tree: &Tree,
+    document: &mut Document,
+) -> Result<(), LoadError> {
     let attach = Attach::read(e);
+    // out of the document while it is read, because the document is written at the same time
     let Some(mut model) = document.models.remove(&attach.model) else {
         return Err(unknown(tree, &attach, "model", &attach.model));
     };
@@ -32,26 +39,26 @@ fn unknown(tree: &Tree, attach: &Attach, kind: &'static str, name: &str) -> Load
     tree.error(attach.at, ErrorKind::UnknownName { attribute, kind, name })
 }
 
-/// The part of a model that an `<attach>` takes.
+/// The part of a model that an `<attach>` copies.
 pub(super) struct AttachedPart<'a> {
     prefix: &'a str,
-    /// The bodies of the model that come along.
+    /// The bodies of the model that are copied.
     pub bodies: std::ops::Range<usize>,
-    /// The names in the model of what comes along.
+    /// The names, in the model, of the elements that are copied.
     names: BTreeSet<(ElementKind, String)>,
-    /// Where the first body is put in the document.
+    /// Index of the first copied body in the document.
     pub base: usize,
 }
 
 impl AttachedPart<'_> {
-    /// Changes a name to that in the document.
+    /// Changes an element's own name to its name in the document.
     fn rename(&self, name: &mut String) {
         if !name.is_empty() {
             self.refer(name);
         }
     }
 
-    /// Changes a name that something refers to.
+    /// Changes a name by which an element refers to another.
     fn refer(&self, name: &mut String) {
         *name = format!("{}{name}", self.prefix);
     }
@@ -70,23 +77,24 @@ impl AttachedPart<'_> {
         }
     }
 
-    /// Tells whether something of the model comes along.
+    /// Tells whether an element of the model is copied.
     fn has(&self, thing: ElementKind, name: &str) -> bool {
+        // a reference to the world keeps its meaning only if the prefix does not change its name
         let world = thing == ElementKind::Body && name == "world" && self.prefix.is_empty();
         world || self.names.contains(&(thing, name.to_owned()))
     }
 
-    /// Changes the names that an element refers to; returns whether it comes along, and otherwise adds to `absent` why not.
-    fn admit<T: Referring>(&self, element: &mut T, absent: &mut Vec<Absent>) -> bool {
+    /// Changes the names that an element refers to. Returns whether it is copied; if it is not, `absent` gets the references that are missing.
+    fn admit<T: Reference>(&self, element: &mut T, absent: &mut Vec<MissingReference>) -> bool {
         let at = element.at();
         let renamed = !self.prefix.is_empty();
         if let Some((thing, name)) = element.left().filter(|_| renamed) {
-            absent.push(Absent { at, thing, name });
+            absent.push(MissingReference { at, thing, name });
             return false;
         }
         let mut names = element.names();
         let some = T::LOOSE && names.iter().any(|(thing, name)| self.has(*thing, name));
-        // MuJoCo looks for the second name as it is where the first one comes along
+        // MuJoCo looks for the second name as it is written, if the first one is copied: so `world` is found
         let world = |thing: ElementKind, name: &str| some && thing == ElementKind::Body && name == "world";
         let there = |thing: ElementKind, name: &str| self.has(thing, name) || world(thing, name);
         let whole = names.iter().all(|(thing, name)| there(*thing, name));
@@ -95,7 +103,9 @@ impl AttachedPart<'_> {
             if whole && found {
                 self.refer(name);
             } else if !whole && !found {
-                let mut add = |name: String| absent.push(Absent { at, thing, name });
+                // MuJoCo looks for the name with the prefix and, if another name of the element was found, as it is written: `check_absent`
+                // refuses documents in which either finds an element by chance
+                let mut add = |name: String| absent.push(MissingReference { at, thing, name });
                 if some {
                     add(name.clone());
                 }
@@ -106,8 +116,13 @@ impl AttachedPart<'_> {
         whole
     }
 
-    /// Copies the elements that come along; returns the places of the copies.
-    fn copy<T: Referring>(&self, from: &[T], to: &mut Vec<T>, absent: &mut Vec<Absent>) -> Vec<Option<usize>> {
+    /// Copies the elements of a list whose references are copied; returns the index of each copy.
+    fn copy<T: Reference>(
+        &self,
+        from: &[T],
+        to: &mut Vec<T>,
+        absent: &mut Vec<MissingReference>,
+    ) -> Vec<Option<usize>> {
         let copy = |element: &T| {
             let mut element = element.clone();
             self.admit(&mut element, absent).then(|| {
@@ -123,11 +138,12 @@ impl AttachedPart<'_> {
 fn take(
     attach: &Attach,
     model: &mut Document,
-    spot: Spot,
+    spot: Insertion,
     tree: &Tree,
     document: &mut Document,
 ) -> Result<(), LoadError> {
-    document.copied.add(Amount::of(model), attach.at, tree)?;
+    document.copied.add(CopyCount::of(model), attach.at, tree)?;
+    // before anything is copied, so that the copies take their part of each keyframe with them
     let keys = say_keys(model, (&attach.prefix, ""), tree)?;
     document.moved_keys.extend(keys);
     let bodies = &model.bodies;
@@ -145,6 +161,7 @@ fn take(
     let taken = bodies[taking.bodies.clone()].iter().flat_map(hanging);
     let named = taken.filter(|(_, name)| !name.is_empty());
     taking.names = order::set(named.map(|(thing, name)| (thing, name.clone())));
+    // bodies first, then the elements that refer to them: sensors may refer to copied tendons and actuators
     take_tree(&taking, model, spot, document);
     // keyframes of models that it is made of keep the names that they have there
     document.moved_keys.append(&mut model.moved_keys);
@@ -154,21 +171,24 @@ fn take(
     Ok(())
 }
 
-/// Copies bodies with what hangs on them, and the frames that they stand in. What keyframes say of a body goes with it; one that does not
-/// come along keeps it for the next time that something is taken.
-fn take_tree(taking: &AttachedPart, from: &mut Document, spot: Spot, document: &mut Document) {
+/// Copies bodies with their joints, geoms, sites, cameras and lights, and the frames that they are in. The values of keyframes move with a body;
+/// a body that is not copied keeps them for the next `<attach>` of this model.
+fn take_tree(taking: &AttachedPart, from: &mut Document, spot: Insertion, document: &mut Document) {
     let bodies = &from.bodies[taking.bodies.clone()];
     let mut used = vec![false; from.frames.len()];
+    // not the frame of the root, which the place of the <attach> replaces
     let inner = bodies.iter().skip(1).filter_map(|body| body.within);
     let mut open: Vec<usize> = inner.chain(bodies.iter().flat_map(withins)).collect();
     while let Some(id) = open.pop() {
         let frame = &from.frames[id];
         if !std::mem::replace(&mut used[id], true) {
             open.extend(frame.within);
+            // the pose of a copy is a step from the copy before it, so that must come, too
             open.extend(frame.copy.and_then(|copy| copy.previous));
         }
     }
     let mut places = vec![None; used.len()];
+    // frames refer to earlier frames only, so those are copied already
     for (id, frame) in from.frames.iter().enumerate().filter(|(id, _)| used[*id]) {
         let mut frame = frame.clone();
         taking.rename(&mut frame.name);
@@ -181,6 +201,7 @@ fn take_tree(taking: &AttachedPart, from: &mut Document, spot: Spot, document: &
     }
     for (index, original) in from.bodies[taking.bodies.clone()].iter_mut().enumerate() {
         let mut body = original.clone();
+        // as MuJoCo does: a second <attach> of the same body finds no values
         original.states.clear();
         original.joints.iter_mut().for_each(|joint| joint.states.clear());
         let moved = |within: Option<usize>| within.and_then(|within| places[within]);
@@ -193,7 +214,7 @@ fn take_tree(taking: &AttachedPart, from: &mut Document, spot: Spot, document: &
     }
 }
 
-/// Returns the frames that what hangs on a body stands in.
+/// Returns the frames that the elements of a body are in.
 fn withins(body: &Body) -> impl Iterator<Item = usize> {
     let joints = body.joints.iter().map(|joint| joint.within);
     let geoms = body.geoms.iter().map(|geom| geom.within);
@@ -203,7 +224,7 @@ fn withins(body: &Body) -> impl Iterator<Item = usize> {
     joints.chain(geoms).chain(sites).chain(cameras).chain(lights).flatten()
 }
 
-/// Changes the names of a body and of what hangs on it; `moved` tells where frames are now.
+/// Changes the names of a body and of its elements. `moved` maps frames of the model to frames of the document.
 fn take_body(taking: &AttachedPart, body: &mut Body, moved: impl Fn(Option<usize>) -> Option<usize>) {
     taking.rename(&mut body.name);
     for joint in &mut body.joints {
@@ -278,7 +299,7 @@ fn take_assets(taking: &AttachedPart, from: &Document, document: &mut Document) 
     }
 }
 
-/// Copies what refers to others, if they come along.
+/// Copies the elements that refer to others, if all of those are copied.
 fn take_referring(taking: &mut AttachedPart, from: &mut Document, document: &mut Document) {
     let absent = &mut document.absent;
     taking.copy(&from.pairs, &mut document.pairs, absent);
@@ -289,6 +310,7 @@ fn take_referring(taking: &mut AttachedPart, from: &mut Document, document: &mut
         .iter()
         .zip(&tendons)
         .filter(|(tendon, place)| place.is_some() && !tendon.name.is_empty());
+    // only now, as equalities, actuators and sensors may refer to tendons that were copied
     let names = names.map(|(tendon, _)| (ElementKind::Tendon, tendon.name.clone()));
     taking.names.extend(names);
     taking.copy(&from.equalities, &mut document.equalities, absent);
@@ -309,7 +331,8 @@ fn take_referring(taking: &mut AttachedPart, from: &mut Document, document: &mut
     taken.for_each(|(actuator, _)| actuator.forget());
 }
 
-/// Refuses elements that were left out, where MuJoCo may take another element of the document for what they refer to.
+/// Refuses a document in which MuJoCo may find another element for a reference that was not copied. It runs when the whole document is
+/// read, because the other element may come later.
 pub(super) fn check_absent(tree: &Tree, document: &Document) -> Result<(), LoadError> {
     if document.absent.is_empty() {
         return Ok(());

@@ -2,15 +2,15 @@
 
 use super::super::composite::{Composite, CompositeSkin, CompositeType, Link, Prototypes};
 use super::super::custom::Text;
-use super::super::document::{Body, Document, Orientation, Tri};
+use super::super::document::{AutoBool, Body, Document, Orientation};
 use super::super::error::{ErrorKind, LoadError, UNREAD};
 use super::super::relation::Exclude;
 use super::super::schema::Element;
 use super::super::skin::{SKIN_ELEMENTS, Skin};
 use super::super::table::Table;
 use super::super::xml::Tree;
-use super::cable_skin::{self, Band};
-use super::content::Spot;
+use super::cable_skin::{self, SkinGrid};
+use super::insertion::Insertion;
 use crate::model::{GeomType, JointType};
 
 const GONE: &str = "MuJoCo 3.3.0 makes only cables: write particles as <replicate>, ropes as type=\"cable\"; cloth, grids and loops are flexes";
@@ -20,13 +20,14 @@ const ONE_BOX: &str =
 const SHAPE: &str =
     "the geoms of a cable are capsules, cylinders or boxes: give <geom type=\"capsule\" size=\"0.01\"/>";
 
-/// Tells whether MuJoCo would lose a composite: frames around it count for nothing there, but in a copy without a body around it it has gone.
-fn is_lost(spot: Spot, document: &Document) -> bool {
+/// Tells whether MuJoCo would lose a composite: one in a `<replicate>` without a body around it is not copied. Other frames around it are
+/// ignored.
+fn is_lost(spot: Insertion, document: &Document) -> bool {
     let frame = |id: Option<usize>| id.map(|id| &document.frames[id]);
     std::iter::successors(frame(spot.within), |inner| frame(inner.within)).any(|frame| frame.copy.is_some())
 }
 
-/// Reads what geoms, sites and joints of a cable are like.
+/// Reads the prototypes of a cable's geoms, sites and joints.
 pub(super) fn prototypes(e: &Element) -> Result<Prototypes, &'static str> {
     let mut like = Prototypes::initial();
     for part in &e.children {
@@ -34,13 +35,13 @@ pub(super) fn prototypes(e: &Element) -> Result<Prototypes, &'static str> {
             "geom" => like.geom.apply(part),
             "site" => like.site.apply(part),
             "joint" => like.joint.apply(part),
-            // read where the bodies are done
+            // read by `skin` below
             "skin" => {}
             _ => return Err(UNREAD),
         }
     }
-    // whatever is said: MuJoCo 3.3.0 does not read it there
-    like.joint.limited = Tri::Auto;
+    // MuJoCo 3.3.0 ignores the attribute here
+    like.joint.limited = AutoBool::Auto;
     if e.children.iter().filter(|part| part.name == "joint").count() > 1 {
         return Err("a cable has one <joint kind=\"main\">");
     }
@@ -51,7 +52,7 @@ pub(super) fn prototypes(e: &Element) -> Result<Prototypes, &'static str> {
 }
 
 /// Adds a cable.
-pub(super) fn cable(e: &Element, spot: Spot, tree: &Tree, document: &mut Document) -> Result<(), LoadError> {
+pub(super) fn cable(e: &Element, spot: Insertion, tree: &Tree, document: &mut Document) -> Result<(), LoadError> {
     let invalid = |what| tree.error(e.at, ErrorKind::Invalid(what));
     let composite = Composite::read(e);
     if composite.kind == CompositeType::Gone {
@@ -68,15 +69,17 @@ pub(super) fn cable(e: &Element, spot: Spot, tree: &Tree, document: &mut Documen
     }
     (like.geom.at, like.site.at, like.joint.at) = (e.at, e.at, e.at);
     let prefix = &composite.prefix;
+    // MuJoCo adds this text, and programs that read `text_data` find their own at the same index
     document.texts.push(Text {
         at: e.at,
         name: format!("composite_{prefix}"),
         data: format!("rope_{prefix}"),
     });
-    let names = Names {
+    let names = CableNames {
         prefix,
         count: links.len(),
     };
+    // only cables of boxes have a skin, as in MuJoCo
     if like.geom.kind == GeomType::Box {
         let taken = document.skins.iter().map(Skin::elements).sum();
         let left = tree.limits.mesh_elements.saturating_sub(taken);
@@ -98,6 +101,7 @@ pub(super) fn cable(e: &Element, spot: Spot, tree: &Tree, document: &mut Documen
             parent,
             ..body
         });
+        // neighbours overlap at their joint
         if index + 1 < links.len() {
             document.excludes.push(Exclude {
                 at: e.at,
@@ -110,8 +114,8 @@ pub(super) fn cable(e: &Element, spot: Spot, tree: &Tree, document: &mut Documen
     Ok(())
 }
 
-/// Makes the skin of a cable of boxes with half lengths `size`; none where it has more vertices, texture coordinates and faces than are `left`.
-fn skin(e: &Element, names: Names, size: [f64; 3], left: usize) -> Result<Option<Skin>, &'static str> {
+/// Makes the skin of a cable of boxes with half lengths `size`; `None` if it has more vertices, texture coordinates and faces than are `left`.
+fn skin(e: &Element, names: CableNames, size: [f64; 3], left: usize) -> Result<Option<Skin>, &'static str> {
     if names.count == 1 {
         return Err(ONE_BOX);
     }
@@ -123,20 +127,20 @@ fn skin(e: &Element, names: Names, size: [f64; 3], left: usize) -> Result<Option
             ..CompositeSkin::initial()
         },
     };
-    let band = Band::new(bodies.len(), like.subgrid);
+    let band = SkinGrid::new(bodies.len(), like.subgrid);
     let fits = band.elements(like.texcoord) <= left;
     Ok(fits.then(|| cable_skin::skin(&like, band, names.prefix, &bodies, size)))
 }
 
-/// The names of a cable's parts: those of the first and the last body say so.
+/// The names of a cable's parts. Those of the first and the last body end in `first` and `last`.
 #[derive(Clone, Copy)]
-struct Names<'a> {
+struct CableNames<'a> {
     prefix: &'a str,
     /// Number of bodies.
     count: usize,
 }
 
-impl Names<'_> {
+impl CableNames<'_> {
     fn of(&self, kind: &str, index: usize) -> String {
         let Self { prefix, count } = self;
         match index {
@@ -148,7 +152,7 @@ impl Names<'_> {
 }
 
 /// Returns a body of a cable: a geom along the link, a joint to the body before, and sites at the ends of the cable.
-fn piece(composite: &Composite, like: &Prototypes, link: &Link, index: usize, names: &Names) -> Body {
+fn piece(composite: &Composite, like: &Prototypes, link: &Link, index: usize, names: &CableNames) -> Body {
     let (first, last) = (index == 0, index + 1 == names.count);
     let mut body = Body {
         name: names.of("B", index),
@@ -171,6 +175,7 @@ fn piece(composite: &Composite, like: &Prototypes, link: &Link, index: usize, na
         joint.kind = JointType::Ball;
         if first && composite.initial == "free" {
             joint.kind = JointType::Free;
+            // the joint of the whole cable, not one between its parts
             (joint.damping, joint.armature, joint.frictionloss) = (0.0, 0.0, 0.0);
         }
         body.joints.push(joint);

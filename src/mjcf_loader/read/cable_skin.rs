@@ -12,9 +12,9 @@ const CUBIC: [[f64; 4]; 4] = [
     [2.0, -2.0, 1.0, 1.0],
 ];
 
-/// How finely the band is divided, and so how many vertices each of its two faces has.
+/// The division of the skin, which decides the number of vertices of each of its two faces.
 #[derive(Clone, Copy)]
-pub(super) struct Band {
+pub(super) struct SkinGrid {
     /// Points that bones hold: along the cable and across, where a band that is divided has one in the middle, too.
     held: [usize; 2],
     /// Pieces from one of them to the next.
@@ -23,7 +23,7 @@ pub(super) struct Band {
     vertices: [usize; 2],
 }
 
-impl Band {
+impl SkinGrid {
     pub fn new(bodies: usize, subgrid: i32) -> Self {
         let subgrid = usize::try_from(subgrid).unwrap_or(0); // as in MuJoCo, less than nothing is nothing
         let held = [bodies + 1, if subgrid > 0 { 3 } else { 2 }];
@@ -144,7 +144,7 @@ fn weights(x: [f64; 4], y: [f64; 4], corners: &[[[f64; 4]; 4]; 2]) -> [[f64; 4];
 }
 
 /// Makes the skin of a cable with these bodies, whose boxes have half lengths `size`.
-pub(super) fn skin(like: &CompositeSkin, band: Band, prefix: &str, bodies: &[String], size: [f64; 3]) -> Skin {
+pub(super) fn skin(like: &CompositeSkin, band: SkinGrid, prefix: &str, bodies: &[String], size: [f64; 3]) -> Skin {
     let [rows, columns] = band.held;
     let places = (0..rows).flat_map(|k| (0..columns).map(move |j| (k, j)));
     let bones = places.map(|(k, j)| {

@@ -6,25 +6,14 @@ use super::super::schema::Element;
 use super::super::table::Table;
 use super::attach::attach_model;
 use super::cable::cable;
+use super::insertion::{Insertion, known};
 use super::{Classes, replicate, with};
 use crate::model::JointType;
 
-/// Where elements are put: a body, and a frame in it.
-#[derive(Clone, Copy)]
-pub(super) struct Spot {
-    pub body: usize,
-    pub within: Option<usize>,
-}
-
-impl Spot {
-    /// The world itself.
-    pub const WORLD: Self = Spot { body: 0, within: None };
-}
-
-/// Reads what hangs on a body, or stands in a frame of it, and its child bodies depth first.
+/// Reads the elements of a body or of a frame in it, and its child bodies depth first.
 pub(super) fn content(
     parent: &Element,
-    spot: Spot,
+    spot: Insertion,
     around: &str,
     classes: &Classes,
     document: &mut Document,
@@ -35,11 +24,11 @@ pub(super) fn content(
             "body" => {
                 let body = child(e, spot, inner, classes, document)?;
                 let within = None;
-                content(e, Spot { body, within }, inner, classes, document)?;
+                content(e, Insertion { body, within }, inner, classes, document)?;
             }
             "frame" => {
                 let within = Some(frame(e, spot, inner, classes, document)?);
-                content(e, Spot { within, ..spot }, inner, classes, document)?;
+                content(e, Insertion { within, ..spot }, inner, classes, document)?;
             }
             "replicate" => {
                 let original = replicate::open(e, spot, inner, classes, document)?;
@@ -54,18 +43,15 @@ pub(super) fn content(
     Ok(())
 }
 
-/// Checks that a default class for children exists.
-pub(super) fn known(e: &Element, class: &str, classes: &Classes) -> Result<(), LoadError> {
-    if classes.by_name.contains_key(class) {
-        Ok(())
-    } else {
-        Err(classes.error(e, ErrorKind::UnknownClass(class.to_owned())))
-    }
-}
-
 /// Adds a child body. It is kept out of `content`, which recurses, so that its stack frames stay small.
 #[inline(never)]
-fn child(e: &Element, spot: Spot, inner: &str, classes: &Classes, document: &mut Document) -> Result<usize, LoadError> {
+fn child(
+    e: &Element,
+    spot: Insertion,
+    inner: &str,
+    classes: &Classes,
+    document: &mut Document,
+) -> Result<usize, LoadError> {
     known(e, inner, classes)?;
     let body = Body {
         parent: spot.body,
@@ -78,7 +64,13 @@ fn child(e: &Element, spot: Spot, inner: &str, classes: &Classes, document: &mut
 
 /// Adds a frame. It is kept out of `content`, which recurses, so that its stack frames stay small.
 #[inline(never)]
-fn frame(e: &Element, spot: Spot, inner: &str, classes: &Classes, document: &mut Document) -> Result<usize, LoadError> {
+fn frame(
+    e: &Element,
+    spot: Insertion,
+    inner: &str,
+    classes: &Classes,
+    document: &mut Document,
+) -> Result<usize, LoadError> {
     known(e, inner, classes)?;
     let frame = BodyFrame {
         within: spot.within,
@@ -105,7 +97,7 @@ const FULL: &str = "fullinertia and an orientation are mutually exclusive";
 
 /// Adds any other element to a body. It is kept out of `content`, which recurses, so that its stack frames stay small.
 #[inline(never)]
-fn hang(e: &Element, spot: Spot, around: &str, classes: &Classes, bodies: &mut [Body]) -> Result<(), LoadError> {
+fn hang(e: &Element, spot: Insertion, around: &str, classes: &Classes, bodies: &mut [Body]) -> Result<(), LoadError> {
     let (id, within) = (spot.body, spot.within);
     let body = &mut bodies[id];
     match e.name {

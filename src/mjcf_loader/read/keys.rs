@@ -1,14 +1,15 @@
-//! Keyframes beside `<attach>` and `<replicate>`, as MuJoCo 3.3.0 takes them along: what one says is kept by the joints, actuators and mocap
-//! bodies that are there at that time, and goes with their copies.
+//! Keyframes beside `<attach>` and `<replicate>`, as in MuJoCo 3.3.0: the joints, actuators and mocap bodies that exist at that time keep the
+//! values of a keyframe, and their copies take them along.
 
 use super::super::actuator::Actuator;
-use super::super::attached::{MovedKey, Sizes, na};
+use super::super::attached::{Sizes, na};
+use super::super::attachment::AttachedKeyframe;
 use super::super::custom::Key;
 use super::super::document::{Body, Document};
 use super::super::error::{ErrorKind, LoadError};
 use super::super::xml::Tree;
 
-/// Tells all elements of a document what its keyframes say of them; returns the keyframes, whose names now have a prefix and a suffix.
+/// Distributes the values of the keyframes to the elements of the document. Returns the keyframes, with a prefix and a suffix on their names.
 ///
 /// # Errors
 /// A keyframe has another size than the state has at this time.
@@ -16,7 +17,7 @@ pub(super) fn say_keys(
     document: &mut Document,
     (prefix, suffix): (&str, &str),
     tree: &Tree,
-) -> Result<Vec<MovedKey>, LoadError> {
+) -> Result<Vec<AttachedKeyframe>, LoadError> {
     let sizes = Sizes::of(document);
     let Document {
         keys,
@@ -26,6 +27,7 @@ pub(super) fn say_keys(
     } = document;
     let mut moved = Vec::with_capacity(keys.len());
     for key in keys.iter() {
+        // a keyframe of another length cannot be divided among the elements
         if let Some((attribute, found, wanted)) = sizes.misfit(key) {
             let (min, max) = (wanted, wanted);
             let kind = ErrorKind::WrongCount {
@@ -39,19 +41,19 @@ pub(super) fn say_keys(
         let name = format!("{prefix}{}{suffix}", key.name);
         say(key, &name, bodies, actuators);
         let (at, time) = (key.at, key.time);
-        moved.push(MovedKey { at, name, time });
+        moved.push(AttachedKeyframe { at, name, time });
     }
     Ok(moved)
 }
 
-/// Takes the next numbers of a keyframe; none where it says nothing.
+/// Takes the next numbers of a keyframe; none if it does not give them.
 fn next(numbers: &mut &[f64], count: usize) -> Vec<f64> {
     let (own, rest) = numbers.split_at(count.min(numbers.len()));
     *numbers = rest;
     own.to_vec()
 }
 
-/// Tells elements what a keyframe says of them.
+/// Distributes the values of a keyframe to the elements.
 fn say(key: &Key, name: &str, bodies: &mut [Body], actuators: &mut [Actuator]) {
     let mut qpos = key.qpos.as_slice();
     let mut qvel = key.qvel.as_slice();
@@ -74,8 +76,8 @@ fn say(key: &Key, name: &str, bodies: &mut [Body], actuators: &mut [Actuator]) {
     }
 }
 
-/// Makes the document's own keyframes as long as its state is now that something has come along. MuJoCo 3.3.0 does not know yet which joints
-/// are balls or free, nor in which units angles are: their coordinates become 0, the others `ref` as it is written.
+/// Makes the document's own keyframes as long as its state, after elements were added. MuJoCo 3.3.0 does not know at this point in which units
+/// angles are, nor the coordinates of ball and free joints: those become 0, the others `ref` as it is written.
 pub(super) fn resize_keys(document: &mut Document) {
     if document.keys.is_empty() {
         return;
@@ -94,6 +96,7 @@ pub(super) fn resize_keys(document: &mut Document) {
     }
     let mquat = body_quats(&document.bodies);
     let grow = |numbers: &mut Vec<f64>, rest: &[f64]| {
+        // an attribute that is not given stays so, and takes its default when keyframes are compiled
         if !numbers.is_empty() {
             numbers.truncate(rest.len());
             numbers.extend(&rest[numbers.len()..]);
@@ -110,7 +113,8 @@ pub(super) fn resize_keys(document: &mut Document) {
     }
 }
 
-/// Returns the quaternions of mocap bodies that are written as such; the others count for nothing yet.
+/// Returns the quaternions of mocap bodies. Orientations that are written in another way are not converted yet, in MuJoCo either, and count as
+/// none.
 fn body_quats(bodies: &[Body]) -> Vec<f64> {
     use super::super::document::Orientation;
     let moved = bodies.iter().filter(|body| body.mocap);

@@ -1,56 +1,58 @@
-//! `<replicate>`: copies of what it holds and of all that refers to that, as MuJoCo 3.3.0 makes them.
+//! `<replicate>`: copies of its content and of all elements that refer to it, as MuJoCo 3.3.0 makes them.
 //!
 //! What it holds is read once, under its own names, into a body that stands for all copies. Each copy takes what hangs on that body and the
 //! bodies in it, with the number of the copy behind their names. Elements outside that refer to it by name are copied beside it, as far as
 //! all or, of some kinds, a part of what they refer to was copied; those that refer to the original go with it.
 
-use super::super::attached::{ElementKind, Known, Referring, hanging, said};
-use super::super::document::{Body, BodyFrame, Copied, Document, Orientation, Replicate};
+use super::super::attached::{NameTable, Reference, hanging, said};
+use super::super::attachment::ElementKind;
+use super::super::document::{Body, BodyFrame, Document, Orientation, ReplicaIndex, Replicate};
 use super::super::error::{ErrorKind, LoadError};
 use super::super::schema::Element;
 use super::super::table::Table;
 use super::super::xml::Tree;
 use super::Classes;
-use super::content::{Spot, known};
+use super::insertion::{Insertion, known};
 use super::keys::{resize_keys, say_keys};
 
 /// How many times as many elements as a document may have are looked at for copies: those that refer to others are for every copy again.
 const LOOKS: usize = 100;
 
-/// What a `<replicate>` holds, while it is read.
-pub(super) struct Original {
+/// The content of a `<replicate>`, while it is read.
+pub(super) struct ReplicateContent {
     replicate: Replicate,
-    /// The body that it hangs on, and the frame that it stands in. Bodies and frames in them follow.
+    /// The body and the frame that it is in. The bodies and frames that it holds come after them in the document.
     body: usize,
     frame: usize,
 }
 
-impl Original {
+impl ReplicateContent {
     /// Returns where the elements in it are put.
-    pub fn spot(&self) -> Spot {
-        Spot {
+    pub fn spot(&self) -> Insertion {
+        Insertion {
             body: self.body,
             within: Some(self.frame),
         }
     }
 }
 
-/// Adds the body and the frame for what a `<replicate>` holds. It is kept out of `content`, which recurses, so that its stack frames stay
+/// Adds the body and the frame for the content of a `<replicate>`. It is kept out of `content`, which recurses, so that its stack frames stay
 /// small.
 #[inline(never)]
 pub(super) fn open(
     e: &Element,
-    spot: Spot,
+    spot: Insertion,
     inner: &str,
     classes: &Classes,
     document: &mut Document,
-) -> Result<Original, LoadError> {
+) -> Result<ReplicateContent, LoadError> {
     known(e, inner, classes)?;
-    let original = Original {
+    let original = ReplicateContent {
         replicate: Replicate::read(e),
         body: document.bodies.len(),
         frame: document.frames.len(),
     };
+    // a body for the original, which is read like any other and taken away after the copies: its bodies and frames are then in one range
     document.bodies.push(Body {
         at: e.at,
         parent: spot.body,
@@ -61,13 +63,13 @@ pub(super) fn open(
     Ok(original)
 }
 
-impl Original {
-    /// Returns the frame of a copy: the step from the one before.
-    fn step(&self, spot: Spot, number: usize, previous: Option<usize>) -> BodyFrame {
+impl ReplicateContent {
+    /// Returns the frame of a copy, whose pose is the step from the copy before.
+    fn step(&self, spot: Insertion, number: usize, previous: Option<usize>) -> BodyFrame {
         let mut frame = BodyFrame {
             at: self.replicate.at,
             within: spot.within,
-            copy: Some(Copied { number, previous }),
+            copy: Some(ReplicaIndex { number, previous }),
             ..BodyFrame::initial()
         };
         frame.frame.pos = self.replicate.offset;
@@ -77,7 +79,7 @@ impl Original {
 
     /// Makes the copies and takes the original away. As [`open`], it is kept out of `content`.
     #[inline(never)]
-    pub fn copy(&self, spot: Spot, tree: &Tree, document: &mut Document) -> Result<(), LoadError> {
+    pub fn copy(&self, spot: Insertion, tree: &Tree, document: &mut Document) -> Result<(), LoadError> {
         let at = self.replicate.at;
         let count = usize::try_from(self.replicate.count).unwrap_or(0);
         let joints = &document.bodies[self.body].joints;
@@ -86,9 +88,11 @@ impl Original {
             return Err(tree.error(joint.at, ErrorKind::Invalid(what)));
         }
         let ends = (document.bodies.len(), document.frames.len());
+        // nested <replicate>s multiply: a few of them in a row ask for billions of elements
         let each = amount(&document.bodies[self.body..]) + ends.1 - self.frame;
-        let mut names = Known::of(document);
+        let mut names = NameTable::of(document);
         look(document, at, tree)?;
+        // suffixes are padded with zeros to the digits of the count, as MuJoCo pads them
         let (digits, mut previous) = (count.to_string().len(), None);
         for number in 0..count {
             document.copies = document.copies.saturating_add(each);
@@ -102,19 +106,21 @@ impl Original {
             let (body, frame) = (document.bodies.len(), document.frames.len());
             self.copy_tree(spot, ends, (number, previous), &suffix, document);
             previous = Some(frame);
+            // copies of elements that refer to the original look for its names with this suffix
             names.add(document.bodies[body..].iter().flat_map(hanging));
             names.add(hanging(&document.bodies[spot.body]));
             look(document, at, tree)?;
             copy_referring(&suffix, &mut names, document);
             resize_keys(document);
         }
-        // MuJoCo compares with a copy of the whole model, and in making that forgets what keyframes said of actuators so far
+        // MuJoCo compares with a copy of the whole model, and loses the actuators' values in keyframes when it makes the copy
         for actuator in &mut document.actuators {
             if actuator.readdress("", &names) {
                 actuator.forget();
             }
         }
         move_keys(document, "", at, tree)?;
+        // their values are now with the elements
         document.keys.clear();
         self.take_away(spot, ends, document);
         look(document, at, tree)?;
@@ -122,16 +128,17 @@ impl Original {
         Ok(())
     }
 
-    /// Adds a copy of the bodies from `self.body` and the frames from `self.frame` to the `ends`.
+    /// Adds a copy of the bodies from `self.body` on and of the frames from `self.frame` on, up to `ends`.
     fn copy_tree(
         &self,
-        spot: Spot,
+        spot: Insertion,
         ends: (usize, usize),
         (number, previous): (usize, Option<usize>),
         suffix: &str,
         document: &mut Document,
     ) {
         let by_frame = document.frames.len() - self.frame;
+        // frames of the original become those of the copy; frames around the <replicate> stay
         let moved = |within: Option<usize>| within.map(|at| if at >= self.frame { at + by_frame } else { at });
         document.frames.push(self.step(spot, number, previous));
         for at in self.frame + 1..ends.1 {
@@ -151,7 +158,7 @@ impl Original {
         to.sites.append(&mut held.sites);
         to.cameras.append(&mut held.cameras);
         to.lights.append(&mut held.lights);
-        // the body that stands for the copies is left out
+        // the body around the original is not copied
         let by_body = document.bodies.len() - self.body - 1;
         for at in self.body + 1..ends.0 {
             let original = &mut document.bodies[at];
@@ -169,8 +176,8 @@ impl Original {
         }
     }
 
-    /// Takes the original away: bodies and frames that follow move up.
-    fn take_away(&self, spot: Spot, ends: (usize, usize), document: &mut Document) {
+    /// Removes the original. Bodies and frames behind it move up.
+    fn take_away(&self, spot: Insertion, ends: (usize, usize), document: &mut Document) {
         let (bodies, frames) = (ends.0 - self.body, ends.1 - self.frame);
         document.bodies.drain(self.body..ends.0);
         document.frames.drain(self.frame..ends.1);
@@ -192,14 +199,15 @@ impl Original {
     }
 }
 
-/// Adds to a name that is given.
+/// Appends a suffix to a name, if there is one.
 fn rename(name: &mut String, suffix: &str) {
     if !name.is_empty() {
         name.push_str(suffix);
     }
 }
 
-/// Adds to the names of what hangs on a body; `moved` tells where frames are now. Cameras and lights aim at the copies of their targets.
+/// Appends a suffix to the names of a body's elements. `moved` maps the frames that they are in. Cameras and lights aim at the copies of
+/// their targets.
 fn readdress_hung(body: &mut Body, suffix: &str, moved: &dyn Fn(Option<usize>) -> Option<usize>) {
     for joint in &mut body.joints {
         rename(&mut joint.name, suffix);
@@ -225,7 +233,7 @@ fn readdress_hung(body: &mut Body, suffix: &str, moved: &dyn Fn(Option<usize>) -
     }
 }
 
-/// Returns the number of bodies and of what hangs on them.
+/// Returns the number of bodies and of their elements.
 fn amount(bodies: &[Body]) -> usize {
     bodies
         .iter()
@@ -233,10 +241,11 @@ fn amount(bodies: &[Body]) -> usize {
         .sum()
 }
 
-/// Counts the elements that are looked at for a copy.
+/// Counts the elements that are searched for references to a copy.
 fn look(document: &mut Document, at: usize, tree: &Tree) -> Result<(), LoadError> {
     let pieces: usize = document.tendons.iter().map(|tendon| tendon.path.len()).sum();
     let referring = document.pairs.len() + document.excludes.len() + document.equalities.len();
+    // every copy searches all elements again: without a limit a short document takes quadratic time
     document.looks += 1 + pieces + referring + document.actuators.len() + document.sensors.len();
     let limit = LOOKS.saturating_mul(tree.limits.elements);
     if document.looks > limit {
@@ -246,7 +255,7 @@ fn look(document: &mut Document, at: usize, tree: &Tree) -> Result<(), LoadError
     Ok(())
 }
 
-/// Makes the document's keyframes, with a suffix, such as follow its own.
+/// Moves the document's keyframes, with a suffix, behind its own.
 fn move_keys(document: &mut Document, suffix: &str, at: usize, tree: &Tree) -> Result<(), LoadError> {
     let said = said(document);
     document.copied.add_keys(said, at, tree)?;
@@ -255,8 +264,8 @@ fn move_keys(document: &mut Document, suffix: &str, at: usize, tree: &Tree) -> R
     Ok(())
 }
 
-/// Copies the elements that refer to what was copied.
-fn copy_referring(suffix: &str, names: &mut Known, document: &mut Document) {
+/// Copies the elements that refer to the original.
+fn copy_referring(suffix: &str, names: &mut NameTable, document: &mut Document) {
     copy_list(&mut document.pairs, suffix, names);
     copy_list(&mut document.excludes, suffix, names);
     let tendons = copy_list(&mut document.tendons, suffix, names);
@@ -270,8 +279,9 @@ fn copy_referring(suffix: &str, names: &mut Known, document: &mut Document) {
 }
 
 /// Copies elements of a list to its end; returns where the copies begin.
-fn copy_list<T: Referring>(list: &mut Vec<T>, suffix: &str, names: &Known) -> usize {
+fn copy_list<T: Reference>(list: &mut Vec<T>, suffix: &str, names: &NameTable) -> usize {
     let end = list.len();
+    // up to the old end: copies are not copied again
     for at in 0..end {
         let mut copy = list[at].clone();
         if copy.readdress(suffix, names) {
@@ -283,9 +293,9 @@ fn copy_list<T: Referring>(list: &mut Vec<T>, suffix: &str, names: &Known) -> us
     end
 }
 
-/// Takes elements away that refer to what was taken away, but not those that already referred to nothing in the document: they are errors.
-fn forget_lost(before: &Known, document: &mut Document) {
-    let mut now = Known::of(document);
+/// Removes the elements that refer to the original. Elements whose references never existed stay, so that they are reported as errors.
+fn forget_lost(before: &NameTable, document: &mut Document) {
+    let mut now = NameTable::of(document);
     keep(&mut document.pairs, before, &now);
     keep(&mut document.excludes, before, &now);
     let tendons: Vec<String> = document.tendons.iter().map(|tendon| tendon.name.clone()).collect();
@@ -302,17 +312,17 @@ fn forget_lost(before: &Known, document: &mut Document) {
     keep(&mut document.sensors, before, &now);
 }
 
-/// Forgets the names of elements that were taken away, and those that MuJoCo 3.3.0 does not find any more: it looks for the rest where they
-/// stood before, and the last ones have moved up. What refers to those goes, too.
-fn forget_names<T: Referring>(thing: ElementKind, before: &[String], mut lost: Vec<T>, now: &mut Known) {
+/// Removes the names of elements that were removed, and those that MuJoCo 3.3.0 does not find any more: it looks the rest up by their old
+/// indices, and the last ones have moved up. Elements that refer to those are removed, too.
+fn forget_names<T: Reference>(thing: ElementKind, before: &[String], mut lost: Vec<T>, now: &mut NameTable) {
     let left = before.len() - lost.len();
     let taken = lost.iter_mut().map(|element| element.name().clone());
     let gone = taken.chain(before[left..].iter().cloned());
     gone.for_each(|name| now.remove(thing, &name));
 }
 
-/// Returns the elements of a list that it does not keep.
-fn keep<T: Referring>(list: &mut Vec<T>, before: &Known, now: &Known) -> Vec<T> {
+/// Removes the elements of a list that refer to names that are gone, and returns them.
+fn keep<T: Reference>(list: &mut Vec<T>, before: &NameTable, now: &NameTable) -> Vec<T> {
     let lost = |element: &mut T| element.readdress("", before) && !element.readdress("", now);
     list.extract_if(.., lost).collect()
 }

@@ -67,7 +67,10 @@ fn every_element_that_the_rules_allow_has_a_reader() {
             let (mut document, mut e) = (document(), Element::bare(parent));
             document.bodies.push(document.bodies[0].clone());
             e.children.push(Element::bare(child));
-            let spot = Spot { body: 1, ..Spot::WORLD };
+            let spot = Insertion {
+                body: 1,
+                ..Insertion::WORLD
+            };
             is_read(parent.name, child, content(&e, spot, MAIN, &classes, &mut document));
             count += 1;
         }

@@ -4,7 +4,7 @@ use quick_xml::XmlVersion;
 use quick_xml::events::{BytesStart, Event};
 use quick_xml::reader::Reader;
 
-use super::super::error::{ErrorKind, LoadError, Place};
+use super::super::error::{ErrorKind, LoadError, Location};
 use super::{Node, Tree};
 
 /// Turns byte offsets, which only grow, into lines and columns.
@@ -35,7 +35,7 @@ impl Cursor<'_> {
 pub(super) struct Parser<'t> {
     tree: &'t mut Tree,
     file: usize,
-    /// Nesting depth of the element that the file stands for.
+    /// Nesting depth of the element that the file replaces.
     base_depth: usize,
     cursor: Cursor<'t>,
     open: Vec<usize>,
@@ -62,7 +62,10 @@ impl<'t> Parser<'t> {
 
     /// Builds an error at the cursor.
     fn fail(&self, kind: ErrorKind) -> LoadError {
-        let mut place = self.open.last().map_or_else(Place::default, |&at| self.tree.place(at));
+        let mut place = self
+            .open
+            .last()
+            .map_or_else(Location::default, |&at| self.tree.place(at));
         place.file.clone_from(&self.tree.files[self.file]);
         (place.line, place.column) = (self.cursor.line, self.cursor.column);
         LoadError {
@@ -90,7 +93,7 @@ impl<'t> Parser<'t> {
                 Ok(Event::Eof) => return self.end(),
                 Ok(Event::Decl(_)) => {}
                 Ok(Event::Text(content)) if content.trim().is_empty() => {}
-                // as in MuJoCo, text within elements says nothing, and ends at a null character
+                // as in MuJoCo, text within elements is ignored, and ends at a null character
                 Ok(Event::Text(content)) if !self.open.is_empty() && !content.contains('\0') => self.fill(),
                 Ok(Event::CData(content)) if !self.open.is_empty() && !content.contains('\0') => self.fill(),
                 Ok(Event::Comment(content)) if !content.contains('\0') => self.fill(),

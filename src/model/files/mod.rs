@@ -11,7 +11,7 @@ pub use owner::Owner;
 pub use unfinished::replace_file;
 pub use unfinished::{replace_file_with, sweep, unfinished};
 
-/// Opens a file that comes from outside. Whatever is not a regular file is refused before it is opened: a pipe would
+/// Opens a file that comes from outside. Anything but a regular file is refused before it is opened: a pipe would
 /// wait for ever, and a device need not end.
 pub fn open(path: &Path) -> io::Result<File> {
     let regular = |meta: std::fs::Metadata| {

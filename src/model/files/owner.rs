@@ -74,7 +74,7 @@ mod tests {
     fn a_folder_belongs_to_one_process() {
         let folder = std::env::temp_dir().join(format!("babybench_owner_{}", std::process::id()));
         std::fs::create_dir_all(&folder).expect("a folder");
-        // what a killed process left
+        // left by a killed process
         std::fs::write(folder.join(NAME), "1").expect("a file");
         let first = Owner::of(&folder).expect("nobody holds it");
         let number = std::fs::read_to_string(folder.join(NAME)).expect("it names its owner");

@@ -1,6 +1,6 @@
 //! Files that are written under another name and renamed when they are complete.
 //!
-//! Whoever writes such a file holds a lock on it, which the system releases when the process ends, however it ends. So a
+//! The writer of such a file holds a lock on it, which the system releases when the process ends, however it ends. So a
 //! file without its lock was left by a process that was killed, and the next one removes it.
 
 use std::ffi::{OsStr, OsString};

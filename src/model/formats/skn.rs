@@ -57,13 +57,13 @@ pub struct BoneFile {
     pub vertweight: Vec<f32>,
 }
 
-/// What is left of a file.
-struct Rest<'a> {
+/// A reader over the bytes of a file.
+struct ByteReader<'a> {
     bytes: &'a [u8],
     at: usize,
 }
 
-impl Rest<'_> {
+impl ByteReader<'_> {
     /// Reads rows of numbers; nothing is set aside for more than the file has.
     fn rows<const N: usize>(&mut self, count: usize) -> Result<Vec<[f32; N]>, SkinError> {
         self.each(count, N, floats)
@@ -132,7 +132,7 @@ impl SkinFile {
             return Err(SkinError::Sizes(sizes));
         }
         let [vertices, texcoords, faces, bones] = sizes.map(|size| size.unsigned_abs() as usize);
-        let mut rest = Rest { bytes, at: HEADER };
+        let mut rest = ByteReader { bytes, at: HEADER };
         let (vert, texcoord) = (rest.rows(vertices)?, rest.rows(texcoords)?);
         let face = rest.each(faces, 3, |bytes, at| {
             Some([word(bytes, at)?, word(bytes, at + 4)?, word(bytes, at + 8)?])

@@ -155,7 +155,7 @@ fn join(
         faces[first + n].neighbor[1] = next;
         faces[next].neighbor[2] = first + n;
     }
-    // only what was set, as clearing all points for every corner would make the whole quadratic
+    // only the entries that were set: clearing all points for every corner would be quadratic
     border.iter().for_each(|b| starting_at[b.0] = usize::MAX);
     Some(())
 }

@@ -53,13 +53,13 @@ const ENDLESS: f64 = 1e10;
 
 /// A box along given axes: its centre, its half sizes and its axes, the columns of the matrix.
 #[derive(Clone, Copy)]
-pub(super) struct Oriented<'a> {
+pub(super) struct OrientedBox<'a> {
     centre: Vec3,
     half: Vec3,
     mat: &'a Mat3,
 }
 
-impl<'a> Oriented<'a> {
+impl<'a> OrientedBox<'a> {
     /// Places a box, given by its centre and half sizes, in a frame.
     pub(super) fn placed(own: &[f64; 6], pos: Vec3, mat: &'a Mat3) -> Self {
         Self {
@@ -77,7 +77,7 @@ impl<'a> Oriented<'a> {
     }
 
     /// Tells whether one of its faces is further from another box than `margin` (m), which is beyond it.
-    fn clears(&self, other: &Oriented, margin: f64) -> bool {
+    fn clears(&self, other: &OrientedBox, margin: f64) -> bool {
         let between = sub(other.centre, self.centre);
         (0..3).any(|k| {
             let axis = column(self.mat, k);
@@ -87,10 +87,11 @@ impl<'a> Oriented<'a> {
 
     /// Tells whether a face of one of two boxes is further from the other than `margin` (m), as MuJoCo does, which compares nothing with a
     /// box that has no end in some direction.
-    pub(super) fn apart(&self, other: &Oriented, margin: f64) -> bool {
+    #[doc(alias = "mj_collideOBB")]
+    pub(super) fn apart(&self, other: &OrientedBox, margin: f64) -> bool {
         let endless = |half: &f64| *half >= ENDLESS;
-        let ends = |part: &Oriented| !part.half.iter().any(endless);
-        let all = |part: &Oriented| part.half.iter().all(endless);
+        let ends = |part: &OrientedBox| !part.half.iter().any(endless);
+        let all = |part: &OrientedBox| part.half.iter().all(endless);
         if all(self) || all(other) {
             return false;
         }

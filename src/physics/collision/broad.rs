@@ -38,7 +38,7 @@ fn decides(model: &Model, s: &State, geoms: [usize; 2]) -> bool {
     apart || aside(1) || aside(2)
 }
 
-/// Tells whether a body is swept with all others: the world, and what stands still and has a plane.
+/// Tells whether a body is paired with all others: the world, and bodies that never move and have a plane.
 fn is_endless(model: &Model, body: usize) -> bool {
     let mut geoms = (0..model.ngeom()).filter(|&g| model.geom_bodyid[g] == body);
     body == 0 || model.body_weldid[body] == 0 && geoms.any(|g| model.geom_type[g] == GeomType::Plane)

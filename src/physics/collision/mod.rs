@@ -12,7 +12,7 @@ mod trees;
 use crate::contact::{ContactOptions, Quirks};
 use crate::model::Model;
 
-pub use pairs::{ContactRules, Pair, PairTable};
+pub use pairs::{ContactRules, GeomPair, PairTable};
 pub use sweep::Sweep;
 pub use sweep::placed;
 

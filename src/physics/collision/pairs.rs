@@ -2,7 +2,7 @@
 
 mod rules;
 
-use super::trees::Trees;
+use super::trees::BodyTrees;
 use crate::contact::needs_convex;
 use crate::math::{MINVAL, order};
 use crate::model::{GeomType, Model};
@@ -18,7 +18,7 @@ const MIN_FRICTION: f64 = 1e-5;
 
 /// Two geoms that may touch, with the parameters of their contacts.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Pair {
+pub struct GeomPair {
     /// The geoms, the lower [`GeomType`](crate::model::GeomType) first; of equal types the one of the lower body, or the first of an explicit
     /// pair.
     pub geom: [usize; 2],
@@ -43,25 +43,25 @@ pub struct Pair {
 #[derive(Clone, Debug)]
 pub struct PairTable {
     rules: ContactRules,
-    table: Option<Table>,
-    trees: Trees,
+    table: Option<IndexedPairs>,
+    trees: BodyTrees,
 }
 
-/// All pairs, and which of them two geoms are.
+/// All pairs, with an index by their two geoms.
 #[derive(Clone, Debug)]
-struct Table {
+struct IndexedPairs {
     /// The first pair of two geoms, row by row.
     index: Vec<u32>,
     /// The next pair of the same geoms, for each pair: an explicit pair may be written more than once, and counts as
     /// often.
     next: Vec<u32>,
-    pairs: Vec<Pair>,
+    pairs: Vec<GeomPair>,
 }
 
 const NONE: u32 = u32::MAX;
 
 /// Lower body, higher body, whether the pair is not explicit, order among those.
-pub(super) type Order = (u32, u32, bool, u32, u32);
+pub(super) type PairOrder = (u32, u32, bool, u32, u32);
 
 impl PairTable {
     /// Derives the table of `model`.
@@ -77,21 +77,21 @@ impl PairTable {
                 index[a * ngeom + b] = k as u32;
                 index[b * ngeom + a] = k as u32;
             }
-            Table { index, next, pairs }
+            IndexedPairs { index, next, pairs }
         });
-        let trees = Trees::new(model);
+        let trees = BodyTrees::new(model);
         Self { rules, table, trees }
     }
 
     /// Returns all pairs, in contact order; `None` for a scene of more than 256 geoms, whose pairs are not listed.
     #[inline]
-    pub fn pairs(&self) -> Option<&[Pair]> {
+    pub fn pairs(&self) -> Option<&[GeomPair]> {
         self.table.as_ref().map(|table| table.pairs.as_slice())
     }
 
     /// Returns the trees of boxes around the geoms of each body.
     #[inline]
-    pub(super) fn trees(&self) -> &Trees {
+    pub(super) fn trees(&self) -> &BodyTrees {
         &self.trees
     }
 
@@ -125,12 +125,12 @@ impl PairTable {
 
     /// Returns the places of the pairs of two geoms in contact order; none if they may not touch.
     #[inline]
-    pub(super) fn orders(&self, a: usize, b: usize) -> impl Iterator<Item = Order> {
+    pub(super) fn orders(&self, a: usize, b: usize) -> impl Iterator<Item = PairOrder> {
         self.rules.orders(a, b)
     }
 
     /// Makes the pair at a place in contact order of two geoms that may touch.
-    pub(super) fn pair(&self, model: &Model, order: Order, a: usize, b: usize) -> Pair {
+    pub(super) fn pair(&self, model: &Model, order: PairOrder, a: usize, b: usize) -> GeomPair {
         match order {
             (_, _, false, p, _) => explicit(model, p as usize),
             _ => dynamic(model, self.rules.ordered(a, b)),
@@ -139,8 +139,8 @@ impl PairTable {
 }
 
 /// Lists all pairs of a model in contact order.
-fn list(model: &Model, rules: &ContactRules) -> Vec<Pair> {
-    let mut found: Vec<(Order, Pair)> = Vec::new();
+fn list(model: &Model, rules: &ContactRules) -> Vec<GeomPair> {
+    let mut found: Vec<(PairOrder, GeomPair)> = Vec::new();
     for (p, &[a, b]) in model.pair_geom.iter().enumerate() {
         found.push((rules.explicit_order(p, a, b), explicit(model, p)));
     }
@@ -174,7 +174,7 @@ fn template(geom: [usize; 2], dim: usize, friction: [f64; 5], solref: [f64; 2], 
     }
 }
 
-fn explicit(model: &Model, p: usize) -> Pair {
+fn explicit(model: &Model, p: usize) -> GeomPair {
     let [a, b] = model.pair_geom[p];
     let geom = if model.geom_type[a] <= model.geom_type[b] {
         [a, b]
@@ -190,7 +190,7 @@ fn explicit(model: &Model, p: usize) -> Pair {
     );
     t.solreffriction = model.pair_solreffriction[p];
     t.includemargin = model.pair_margin[p] - model.pair_gap[p];
-    Pair {
+    GeomPair {
         geom: t.geom,
         margin: model.pair_margin[p],
         midphase: false,
@@ -201,7 +201,7 @@ fn explicit(model: &Model, p: usize) -> Pair {
 
 /// Mixes the parameters of two geoms: those of the geom of higher priority; at equal priority the greater dimension,
 /// the greater friction and averages weighted by `solmix`.
-fn dynamic(model: &Model, geom: [usize; 2]) -> Pair {
+fn dynamic(model: &Model, geom: [usize; 2]) -> GeomPair {
     let [a, b] = geom;
     let (pa, pb) = (model.geom_priority[a], model.geom_priority[b]);
     let (dim, slip, solref, solimp);
@@ -233,7 +233,7 @@ fn dynamic(model: &Model, geom: [usize; 2]) -> Pair {
     let gap = model.geom_gap[a].max(model.geom_gap[b]);
     let mut t = template(geom, dim, [slip[0], slip[0], slip[1], slip[2], slip[2]], solref, solimp);
     t.includemargin = margin - gap;
-    Pair {
+    GeomPair {
         geom,
         margin,
         midphase: midphase(model, geom),

@@ -1,10 +1,10 @@
 //! Contact detection: sweep and prune along x, then the exact routines.
 
-use super::pairs::Order;
+use super::pairs::PairOrder;
 use super::{boxes, broad};
-use crate::collision::{Pair, PairTable};
+use crate::collision::{GeomPair, PairTable};
 use crate::contact::{ContactOptions, ContactPoint, PlacedGeom, Scratch, bounding_test, collide};
-use crate::engine::{EngineError, within};
+use crate::error::{EngineError, within};
 use crate::limits::Limits;
 use crate::math::Vec3;
 use crate::model::{GeomType, Model};
@@ -16,11 +16,11 @@ const SLACK: f64 = 1e-7;
 
 /// The world box of a geom.
 #[derive(Clone, Copy, Debug)]
-struct Bounds {
+struct WorldBox {
     geom: usize,
     /// Distance up to which any of the geom's pairs has contacts, m.
     margin: f64,
-    /// Whether it can touch what never moves.
+    /// Whether it can touch geoms that never move.
     moves: bool,
     low: Vec3,
     high: Vec3,
@@ -32,14 +32,14 @@ pub struct Sweep {
     options: ContactOptions,
     scratch: Scratch,
     /// Geoms that are part of a pair, with their boxes, by lower x of the last step.
-    boxes: Vec<Bounds>,
+    boxes: Vec<WorldBox>,
     /// Whether the boxes of geoms that never move are known.
     fixed_known: bool,
     /// Those of `boxes` that move or are near something that does, in the same order.
-    near: Vec<Bounds>,
+    near: Vec<WorldBox>,
     /// Pairs whose boxes overlap, by their places in the table, or, where there is none, by their order.
     candidates: Vec<u32>,
-    untabulated: Vec<(Order, [u32; 2])>,
+    untabulated: Vec<(PairOrder, [u32; 2])>,
     points: Vec<ContactPoint>,
 }
 
@@ -56,9 +56,9 @@ impl Sweep {
                 margin[g] = margin[g].max(own);
             }
         }
-        let boxes: Vec<Bounds> = (0..model.ngeom())
+        let boxes: Vec<WorldBox> = (0..model.ngeom())
             .filter(|&g| table.takes_part(g))
-            .map(|geom| Bounds {
+            .map(|geom| WorldBox {
                 geom,
                 margin: margin[geom],
                 moves: moves(geom),
@@ -82,6 +82,7 @@ impl Sweep {
     ///
     /// # Errors
     /// More geoms near each other, or more contacts, than [`Limits`] allow by default.
+    #[doc(alias("mj_collision", "mj_broadphase"))]
     #[inline(always)]
     pub fn contacts(&mut self, model: &Model, table: &PairTable, s: &mut State) -> Result<(), EngineError> {
         self.place(model, s);
@@ -113,8 +114,9 @@ impl Sweep {
     }
 
     /// Adds the contacts of a pair.
+    #[doc(alias = "mj_collideGeoms")]
     #[inline(always)]
-    fn narrow_phase(&mut self, model: &Model, table: &PairTable, pair: &Pair, s: &mut State) {
+    fn narrow_phase(&mut self, model: &Model, table: &PairTable, pair: &GeomPair, s: &mut State) {
         let [a, b] = pair.geom;
         let (first, second) = (placed(model, s, a), placed(model, s, b));
         if !bounding_test(
@@ -132,7 +134,8 @@ impl Sweep {
         if !points.is_empty() && broad::drops(model, s, pair.geom) {
             return;
         }
-        if pair.midphase && !points.is_empty() && table.trees().apart(&first, &second, model, pair, s) {
+        let margins = [pair.margin, pair.body_margin];
+        if pair.midphase && !points.is_empty() && table.trees().apart(&first, &second, model, pair.geom, margins, s) {
             return;
         }
         s.contact.extend(points.iter().map(|p| Contact {
@@ -143,7 +146,7 @@ impl Sweep {
         }));
     }
 
-    /// Computes the boxes of what moves, and at the first call those of the rest.
+    /// Computes the boxes of geoms that move, and at the first call those of the others.
     #[inline(always)]
     fn place(&mut self, model: &Model, s: &State) {
         for b in &mut self.boxes {
@@ -174,7 +177,7 @@ impl Sweep {
             }
         }
         let near =
-            |b: &&Bounds| b.moves | (0..3).fold(true, |all, k| all & (low[k] <= b.high[k]) & (b.low[k] <= high[k]));
+            |b: &&WorldBox| b.moves | (0..3).fold(true, |all, k| all & (low[k] <= b.high[k]) & (b.low[k] <= high[k]));
         self.near.clear();
         self.near.extend(self.boxes.iter().filter(near));
     }
@@ -225,7 +228,7 @@ impl Sweep {
 
 /// Calls `found` with the geoms of boxes that overlap, which are sorted by lower x, until it returns false.
 #[inline(always)]
-fn overlaps(boxes: &[Bounds], mut found: impl FnMut(usize, usize) -> bool) {
+fn overlaps(boxes: &[WorldBox], mut found: impl FnMut(usize, usize) -> bool) {
     let mut rest = boxes;
     while let [a, others @ ..] = rest {
         rest = others;

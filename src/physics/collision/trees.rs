@@ -2,8 +2,7 @@
 
 use std::ops::Range;
 
-use super::Pair;
-use super::boxes::Oriented;
+use super::boxes::OrientedBox;
 use crate::contact::PlacedGeom;
 use crate::math::{Vec3, add, order, quat_conj, quat_rotate, sub};
 use crate::model::Model;
@@ -15,7 +14,7 @@ const EPS: f64 = 1e-14;
 /// The trees of all bodies. A node is a box along the body's axes of inertia around some of its geoms; those of each half of them, in
 /// the order of their places along its longest edge, are the nodes below it, and a geom's own is the last.
 #[derive(Clone, Debug)]
-pub(super) struct Trees {
+pub(super) struct BodyTrees {
     /// The box of each node: centre and half sizes from the body's centre of mass along its axes of inertia, m.
     nodes: Vec<[f64; 6]>,
     /// The nodes from the root to each geom, as a range of `steps`.
@@ -23,7 +22,7 @@ pub(super) struct Trees {
     steps: Vec<usize>,
 }
 
-/// A geom that is put into the tree of its body.
+/// A leaf of a tree: a geom of its body.
 #[derive(Clone)]
 struct Leaf {
     geom: usize,
@@ -35,7 +34,7 @@ struct Leaf {
     path: Vec<usize>,
 }
 
-impl Trees {
+impl BodyTrees {
     /// Builds the trees of `model`.
     pub(super) fn new(model: &Model) -> Self {
         let mut trees = Self {
@@ -108,16 +107,17 @@ impl Trees {
         a: &PlacedGeom<'a>,
         b: &PlacedGeom<'a>,
         model: &Model,
-        pair: &Pair,
+        geoms: [usize; 2],
+        [margin, body_margin]: [f64; 2],
         s: &State,
     ) -> bool {
-        let [x, y] = pair.geom;
+        let [x, y] = geoms;
         // boxes are those of the model: around a geom whose size was changed since they say nothing
-        if pair.geom.iter().any(|&g| s.params.geom_size[g] != model.geom_size[g]) {
+        if geoms.iter().any(|&g| s.params.geom_size[g] != model.geom_size[g]) {
             return false;
         }
-        let own = |geom: &PlacedGeom<'a>, g: usize| Oriented::placed(&model.geom_aabb[g], geom.pos, geom.mat);
-        if own(a, x).apart(&own(b, y), pair.margin) {
+        let own = |geom: &PlacedGeom<'a>, g: usize| OrientedBox::placed(&model.geom_aabb[g], geom.pos, geom.mat);
+        if own(a, x).apart(&own(b, y), margin) {
             return true;
         }
         let body = |g: usize| model.geom_bodyid[g];
@@ -128,8 +128,8 @@ impl Trees {
             && !(below.is_empty() && others.is_empty())
         {
             let (node, other) = (&self.nodes[*node], &self.nodes[*other]);
-            let placed = |g: usize, node| Oriented::placed(node, s.xipos[body(g)], &s.ximat[body(g)]);
-            if placed(x, node).apart(&placed(y, other), pair.body_margin) {
+            let placed = |g: usize, node| OrientedBox::placed(node, s.xipos[body(g)], &s.ximat[body(g)]);
+            if placed(x, node).apart(&placed(y, other), body_margin) {
                 return true;
             }
             if others.is_empty() || !below.is_empty() && size(node) > size(other) {
@@ -165,7 +165,7 @@ fn leaf(model: &Model, geom: usize) -> Leaf {
     }
 }
 
-/// Returns what MuJoCo takes for the surface of a box when it chooses the tree to go down: its three numbers are differences of half sizes
+/// Returns MuJoCo's measure of a box's surface, by which it chooses the tree to descend: its three numbers are differences of half sizes
 /// and centres.
 fn size(node: &[f64; 6]) -> f64 {
     let [x, y, z] = std::array::from_fn(|k| node[3 + k] - node[k]);

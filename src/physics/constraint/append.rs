@@ -10,15 +10,15 @@ use crate::topology::Topology;
 
 /// Parameters shared by the rows of a block.
 #[derive(Clone, Copy)]
-pub(super) struct Spec {
+pub(super) struct RowParameters {
     pub(super) solref: [f64; 2],
     pub(super) solimp: [f64; 5],
     /// Approximation of the diagonal of `J M^-1 J'`.
     pub(super) diag: f64,
 }
 
-/// Appends blocks and rows.
-pub(super) struct Rows<'a> {
+/// Appends blocks and rows to the constraint rows of a step.
+pub(super) struct RowAppender<'a> {
     pub(super) model: &'a Model,
     pub(super) topology: &'a Topology,
     /// Motion axes by tile.
@@ -26,7 +26,7 @@ pub(super) struct Rows<'a> {
     pub(super) efc: &'a mut Efc,
 }
 
-impl Rows<'_> {
+impl RowAppender<'_> {
     /// Starts a block without columns.
     #[inline(always)]
     pub(super) fn block(&mut self, kind: ConstraintType, id: usize, dim: usize) {
@@ -106,7 +106,7 @@ impl Rows<'_> {
         self.block(kind, id, dim);
         let (model, topology) = (self.model, self.topology);
         let (mut tiles_a, mut tiles_b) = (topology.body_tiles(a), topology.body_tiles(b));
-        // of the same tree, or one of them is not used
+        // both points are in one tree, or one of them is in the world, whose centre is not used
         let com_a = s.subtree_com[model.body_rootid[a]];
         let com_b = s.subtree_com[model.body_rootid[b]];
         let (offset_a, offset_b) = (sub(point_a, com_a), sub(point_b, com_b));
@@ -126,6 +126,7 @@ impl Rows<'_> {
             if tile_a == tile {
                 tiles_a = &tiles_a[1..];
             }
+            // the same joints move both points alike: their columns would cancel
             if tile_a == tile_b && lanes_a == lanes_b && point_a == point_b {
                 continue;
             }
@@ -145,7 +146,7 @@ impl Rows<'_> {
     /// Appends a row whose impedance follows from `violation` (the distance to the margin, or the norm of a weld's
     /// error). Returns its damping.
     #[inline(always)]
-    pub(super) fn row(&mut self, pos: f64, margin: f64, violation: f64, spec: Spec) -> f64 {
+    pub(super) fn row(&mut self, pos: f64, margin: f64, violation: f64, spec: RowParameters) -> f64 {
         let i = impedance(spec.solref, spec.solimp, violation, self.model.opt.least_timeconst());
         self.row_with(pos, margin, spec.diag, i);
         i.b
@@ -154,11 +155,14 @@ impl Rows<'_> {
     /// Appends a row of an impedance; `diag` approximates the diagonal of `J M^-1 J'`.
     #[inline(always)]
     pub(super) fn row_with(&mut self, pos: f64, margin: f64, diag: f64, i: Impedance) {
+        // the regularisation R in chapter "Computation" of MuJoCo's manual
         let r = ((1.0 - i.imp) / i.imp * diag).max(MINVAL);
+        // dry friction opposes velocity only: it has no position to return to
         let k = if self.block_mut().kind.is_friction() { 0.0 } else { i.k };
         self.push(pos, margin, diag, r, -k * i.imp * (pos - margin), i.b);
     }
 
+    #[doc(alias = "mj_referenceConstraint")]
     #[inline(always)]
     pub(super) fn push(&mut self, pos: f64, margin: f64, diag: f64, r: f64, aref: f64, damping: f64) {
         let e = &mut *self.efc;

@@ -2,21 +2,21 @@
 
 use crate::constraint::{Block, ConeShape, Efc};
 
-/// The zone of its cost in which a contact is.
+/// The zone of a contact in the elliptic cone's cost: MuJoCo's top, bottom and middle zone.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
-pub(super) enum Zone {
+pub(super) enum ConeZone {
     /// No force, no curvature.
     #[default]
     Flat,
     /// Quadratic: curvature `diag(d)`.
     Quadratic,
-    /// On the surface of the friction cone: curvature from [`Cone::curvature`].
+    /// On the surface of the friction cone: curvature from [`FrictionCone::curvature`].
     Surface,
 }
 
 /// A contact with friction. The first row is the normal; only the first `dim` rows count.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Cone {
+pub(super) struct FrictionCone {
     /// Number of rows.
     pub(super) dim: usize,
     /// First row in [`Efc`].
@@ -36,14 +36,14 @@ pub(super) struct Cone {
     pub(super) jv: [f64; 6],
     /// Minus the gradient of the cost by `jar`.
     pub(super) force: [f64; 6],
-    pub(super) zone: Zone,
+    pub(super) zone: ConeZone,
     /// Coefficients of the cost along the search direction.
-    line: Line,
+    line: ConeLine,
 }
 
-/// A contact along a line: its quadratic zone, and `n` and `t^2` of the others.
+/// The cost of a contact along a search direction: the quadratic zone, and `n` and `t^2` for the others.
 #[derive(Clone, Copy, Debug, Default)]
-struct Line {
+struct ConeLine {
     /// First and second derivative at 0 when all rows are quadratic.
     slope: f64,
     curvature: f64,
@@ -56,7 +56,7 @@ struct Line {
     vv: f64,
 }
 
-impl Cone {
+impl FrictionCone {
     /// Creates the cone of a contact from its block of rows.
     #[inline(always)]
     pub(super) fn new(b: &Block, efc: &Efc) -> Self {
@@ -92,10 +92,10 @@ impl Cone {
         // The zones of the elliptic cone in MuJoCo's "Computation" chapter: the contact opens faster than friction
         // could follow; or it holds without slipping; or it slides, with the force on the cone.
         if n >= mu * t || (t <= 0.0 && n >= 0.0) {
-            self.zone = Zone::Flat;
+            self.zone = ConeZone::Flat;
             0.0
         } else if mu * n + t <= 0.0 || (t <= 0.0 && n < 0.0) {
-            self.zone = Zone::Quadratic;
+            self.zone = ConeZone::Quadratic;
             let mut cost = 0.0;
             for k in 0..self.dim {
                 self.force[k] = -self.d[k] * jar[k];
@@ -103,7 +103,7 @@ impl Cone {
             }
             cost
         } else {
-            self.zone = Zone::Surface;
+            self.zone = ConeZone::Surface;
             let y = n - mu * t;
             self.force[0] = -self.dm * y * mu;
             let tangential = self.dm * y * mu / t;
@@ -154,10 +154,10 @@ impl Cone {
     /// Prepares [`Self::add_slopes`] for `jar` and `jv`.
     #[inline(always)]
     pub(super) fn prepare_line(&mut self) {
-        let mut line = Line {
+        let mut line = ConeLine {
             n0: self.jar[0] * self.mu,
             n1: self.jv[0] * self.mu,
-            ..Line::default()
+            ..ConeLine::default()
         };
         for k in 0..self.dim {
             let (x, v, d, f) = (self.jar[k], self.jv[k], self.d[k], self.friction[k]);
@@ -214,7 +214,7 @@ mod tests {
     use crate::constraint::ConstraintType;
 
     /// Builds a contact with torsional friction, regularised as the row builder does it.
-    fn contact(jar: [f64; 4]) -> Cone {
+    fn contact(jar: [f64; 4]) -> FrictionCone {
         let block = Block {
             kind: ConstraintType::ContactElliptic,
             dim: 4,
@@ -231,7 +231,7 @@ mod tests {
             cones: vec![shape],
             ..Efc::default()
         };
-        let mut cone = Cone::new(&block, &efc);
+        let mut cone = FrictionCone::new(&block, &efc);
         cone.jar[..4].copy_from_slice(&jar);
         cone
     }
@@ -249,7 +249,7 @@ mod tests {
                 down.jar[k] -= eps;
                 let (cu, cd) = (up.evaluate(), down.evaluate());
                 assert!((cone.force[k] + (cu - cd) / (2.0 * eps)).abs() < 1e-5, "{jar:?} {k}");
-                if cone.zone == Zone::Surface {
+                if cone.zone == ConeZone::Surface {
                     for c in 0..4 {
                         let slope = -(up.force[c] - down.force[c]) / (2.0 * eps);
                         assert!(
@@ -301,8 +301,8 @@ mod tests {
             cone.evaluate();
             cone.zone
         };
-        assert_eq!(zone([1.0, 0.1, 0.0, 0.0]), Zone::Flat);
-        assert_eq!(zone([-1.0, 0.01, 0.0, 0.0]), Zone::Quadratic);
-        assert_eq!(zone([-0.1, 1.0, 0.0, 0.0]), Zone::Surface);
+        assert_eq!(zone([1.0, 0.1, 0.0, 0.0]), ConeZone::Flat);
+        assert_eq!(zone([-1.0, 0.01, 0.0, 0.0]), ConeZone::Quadratic);
+        assert_eq!(zone([-0.1, 1.0, 0.0, 0.0]), ConeZone::Surface);
     }
 }

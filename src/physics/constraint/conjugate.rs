@@ -11,7 +11,7 @@ use crate::topology::Topology;
 /// Finds directions by the rule of Polak and Ribiere, with the inertia as preconditioner; holds the working memory. There is one
 /// island, of all trees.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Conjugate {
+pub(super) struct ConjugateGradient {
     /// The gradient, and `M^-1` times it (nv).
     gradient: Vec<f64>,
     solution: Vec<f64>,
@@ -22,7 +22,7 @@ pub(super) struct Conjugate {
     old_descent: Vec<Lanes>,
 }
 
-impl Conjugate {
+impl ConjugateGradient {
     /// Reserves memory for `nv` degrees of freedom.
     pub fn with_capacity(nv: usize) -> Self {
         let lanes = || Vec::with_capacity(nv);
@@ -36,6 +36,7 @@ impl Conjugate {
     }
 
     /// Sets the search direction of an island from its gradient, and from the direction before unless it is the first.
+    #[doc(alias = "mj_solCG")]
     pub fn descend(
         &mut self,
         model: &Model,

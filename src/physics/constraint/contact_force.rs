@@ -4,6 +4,7 @@ use crate::model::{ConeType, Model};
 use crate::state::State;
 
 /// Fills in the force of each contact (MuJoCo's `mj_contactForce`).
+#[doc(alias = "mj_contactForce")]
 #[inline(always)]
 pub fn contact_forces(model: &Model, s: &mut State) {
     for c in &mut s.contact {

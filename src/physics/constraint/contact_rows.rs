@@ -1,6 +1,6 @@
 //! The rows of contacts, with cones or pyramids.
 
-use super::append::{Rows, Spec};
+use super::append::{RowAppender, RowParameters};
 use super::impedance::is_solref;
 use super::{ConstraintType, impedance};
 use crate::math::{MINVAL, row};
@@ -9,8 +9,9 @@ use crate::state::{Contact, State};
 use crate::tiles::Lanes;
 
 /// Appends the rows of contact `i`.
+#[doc(alias = "mj_instantiateContact")]
 #[inline(always)]
-pub fn contact(rows: &mut Rows, s: &mut State, i: usize) {
+pub fn contact(rows: &mut RowAppender, s: &mut State, i: usize) {
     s.contact[i].efc_address = None;
     let c = &s.contact[i];
     // within its gap a contact is listed, for programs to see, but gives no force
@@ -31,7 +32,7 @@ pub fn contact(rows: &mut Rows, s: &mut State, i: usize) {
 /// have no stiffness; their regularisation follows from that of the normal so that the cone keeps its shape. Returns
 /// whether there are any.
 #[inline(always)]
-fn cone(rows: &mut Rows, s: &State, i: usize) -> bool {
+fn cone(rows: &mut RowAppender, s: &State, i: usize) -> bool {
     let model = rows.model;
     let c = &s.contact[i];
     let [b1, b2] = c.geom.map(|g| model.geom_bodyid[g]);
@@ -58,7 +59,7 @@ fn cone(rows: &mut Rows, s: &State, i: usize) -> bool {
     }
     let first = rows.efc.pos.len();
     let diag = s.params.body_invweight0[b1][0] + s.params.body_invweight0[b2][0];
-    let spec = Spec {
+    let spec = RowParameters {
         solref: c.solref,
         solimp: c.solimp,
         diag,
@@ -88,7 +89,7 @@ fn cone(rows: &mut Rows, s: &State, i: usize) -> bool {
 /// All edges have one regularisation, `2 mu^2 R` with `mu = friction_0 / sqrt(impratio)` and `R` that of the first edge:
 /// then the pyramid resists pressing as the normal alone would.
 #[inline(always)]
-fn pyramid(rows: &mut Rows, s: &State, i: usize) -> bool {
+fn pyramid(rows: &mut RowAppender, s: &State, i: usize) -> bool {
     let model = rows.model;
     let c = &s.contact[i];
     let [b1, b2] = c.geom.map(|g| model.geom_bodyid[g]);
@@ -114,7 +115,7 @@ fn pyramid(rows: &mut Rows, s: &State, i: usize) -> bool {
     }
     let first = rows.efc.pos.len();
     let [w1, w2] = [b1, b2].map(|b| s.params.body_invweight0[b][0]);
-    let spec = Spec {
+    let spec = RowParameters {
         solref: c.solref,
         solimp: c.solimp,
         diag: (w1 + w2) * (1.0 + c.friction[0] * c.friction[0]),

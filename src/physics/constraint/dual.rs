@@ -6,11 +6,11 @@
 
 use std::ops::Range;
 
-use crate::constraint::cone::Cone;
+use crate::constraint::cone::FrictionCone;
 use crate::constraint::friction::Quadratic;
 use crate::constraint::{Block, ConeShape, ConstraintType, Efc};
 use crate::dynamics::{Articulated, Damping, Four};
-use crate::engine::EngineError;
+use crate::error::EngineError;
 use crate::math::MINVAL;
 use crate::model::Model;
 use crate::state::State;
@@ -28,7 +28,7 @@ const CONE_ROWS: usize = 6;
 
 /// Solves for the forces of constraints; holds the working memory.
 #[derive(Clone, Debug, Default)]
-pub struct Dual {
+pub struct DualSolver {
     /// `J` (nefc x nv), row by row.
     jac: Vec<f64>,
     /// `A`: nefc rows of nefc numbers, each filled up with zeros to whole vectors of four.
@@ -54,7 +54,7 @@ pub struct Dual {
     inverse: Vec<f64>,
 }
 
-/// Returns the least and greatest force of a row that is none of an elliptic cone.
+/// Returns the least and greatest force of a row that does not belong to an elliptic cone.
 fn bounds(block: &Block) -> [f64; 2] {
     match block.kind {
         ConstraintType::Equality => [f64::NEG_INFINITY, f64::INFINITY],
@@ -63,12 +63,13 @@ fn bounds(block: &Block) -> [f64; 2] {
     }
 }
 
-impl Dual {
+impl DualSolver {
     /// Computes `qacc, qfrc_constraint` and the row forces by projected Gauss-Seidel. Starts from the forces that `qacc_warmstart`
     /// asks for, or from none, whichever costs less. `bodies` must be up to date.
     ///
     /// # Errors
     /// More numbers in the matrices than [`Limits::dual_numbers`](mjcf_sim_model::Limits::dual_numbers).
+    #[doc(alias = "mj_solPGS")]
     pub fn solve(
         &mut self,
         model: &Model,
@@ -113,7 +114,7 @@ impl Dual {
             let block = efc.blocks[k];
             let rate = |i: usize| product(&self.jac[i * nv..(i + 1) * nv], &s.qacc_warmstart) - efc.aref[i];
             if block.kind == ConstraintType::ContactElliptic {
-                let mut cone = Cone::new(&block, efc);
+                let mut cone = FrictionCone::new(&block, efc);
                 (0..block.dim).for_each(|r| cone.jar[r] = rate(block.row + r));
                 cone.evaluate();
                 efc.force[block.row..block.row + block.dim].copy_from_slice(&cone.force[..block.dim]);
@@ -250,7 +251,7 @@ impl Dual {
         }
     }
 
-    /// Computes what the forces do to the joints.
+    /// Computes the generalised forces of the constraint forces.
     fn finish(&mut self, model: &Model, bodies: &mut Articulated, efc: &Efc, s: &mut State) {
         let nv = model.nv;
         s.qfrc_constraint.fill(0.0);
@@ -269,7 +270,7 @@ impl Dual {
     }
 }
 
-/// Returns what costs are scaled by before they are compared with a tolerance.
+/// Returns the factor on costs before they are compared with a tolerance.
 fn scale(model: &Model) -> f64 {
     1.0 / (model.stat.meaninertia * model.nv.max(1) as f64)
 }

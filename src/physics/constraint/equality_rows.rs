@@ -1,6 +1,6 @@
 //! The rows of equalities.
 
-use super::append::{Rows, Spec};
+use super::append::{RowAppender, RowParameters};
 use super::tendon_rows::tendons;
 use super::{ConstraintType, connected_points, impedance, weld_points};
 use crate::math::sub;
@@ -8,8 +8,9 @@ use crate::model::EqualityKind;
 use crate::state::State;
 
 /// Appends the rows of the active equalities.
+#[doc(alias = "mj_instantiateEquality")]
 #[inline(always)]
-pub fn equalities(rows: &mut Rows, s: &State) {
+pub fn equalities(rows: &mut RowAppender, s: &State) {
     let (model, params) = (rows.model, &*s.params);
     for id in 0..model.neq() {
         if !params.eq_active[id] {
@@ -34,13 +35,13 @@ pub fn equalities(rows: &mut Rows, s: &State) {
 
 /// Appends the row of a joint equality: joint 1 is a polynomial of joint 2, or constant without one.
 #[inline(always)]
-fn joint_equality(rows: &mut Rows, s: &State, id: usize, joints: (usize, Option<usize>), c: [f64; 5]) {
+fn joint_equality(rows: &mut RowAppender, s: &State, id: usize, joints: (usize, Option<usize>), c: [f64; 5]) {
     let model = rows.model;
     let (joint1, joint2) = joints;
     let displacement = |j: usize| s.qpos[model.jnt_qposadr[j]] - model.qpos0[model.jnt_qposadr[j]];
     let d1 = model.jnt_dofadr[joint1];
     let mut pos = displacement(joint1) - s.params.eq_offset[id];
-    let mut spec = Spec {
+    let mut spec = RowParameters {
         solref: model.eq_solref[id],
         solimp: model.eq_solimp[id],
         diag: s.params.dof_invweight0[d1],
@@ -73,7 +74,7 @@ fn polynomial(c: &[f64; 5], x: f64) -> (f64, f64) {
 }
 
 /// Appends the row of an equality of tendons: the length of tendon 1 is a polynomial of that of tendon 2, or constant without one.
-fn tendon_equality(rows: &mut Rows, s: &State, id: usize, (first, second): (usize, Option<usize>), c: [f64; 5]) {
+fn tendon_equality(rows: &mut RowAppender, s: &State, id: usize, (first, second): (usize, Option<usize>), c: [f64; 5]) {
     let model = rows.model;
     let displacement = |t: usize| s.ten_length[t] - model.tendon_length0[t];
     let mut pos = displacement(first) - s.params.eq_offset[id];
@@ -87,7 +88,7 @@ fn tendon_equality(rows: &mut Rows, s: &State, id: usize, (first, second): (usiz
     }
     let count = if second.is_some() { 2 } else { 1 };
     if tendons(rows, s, (ConstraintType::Equality, id), &scales[..count]) {
-        let spec = Spec {
+        let spec = RowParameters {
             solref: model.eq_solref[id],
             solimp: model.eq_solimp[id],
             diag,
@@ -98,7 +99,7 @@ fn tendon_equality(rows: &mut Rows, s: &State, id: usize, (first, second): (usiz
 
 /// Appends the six rows of a weld: translation, rotation.
 #[inline(always)]
-fn weld_equality(rows: &mut Rows, s: &State, id: usize, [body1, body2]: [usize; 2]) {
+fn weld_equality(rows: &mut RowAppender, s: &State, id: usize, [body1, body2]: [usize; 2]) {
     let model = rows.model;
     let Some(weld) = weld_points(model, s, id) else {
         return;
@@ -124,7 +125,7 @@ fn weld_equality(rows: &mut Rows, s: &State, id: usize, [body1, body2]: [usize; 
 
 /// Appends the three rows of a connection of two points.
 #[inline(always)]
-fn connect_equality(rows: &mut Rows, s: &State, id: usize, [body1, body2]: [usize; 2]) {
+fn connect_equality(rows: &mut RowAppender, s: &State, id: usize, [body1, body2]: [usize; 2]) {
     let Some([point1, point2]) = connected_points(rows.model, s, id) else {
         return;
     };
@@ -141,7 +142,7 @@ fn connect_equality(rows: &mut Rows, s: &State, id: usize, [body1, body2]: [usiz
 
 /// Gives the last block its rows, which hold two bodies: those of translation first, then those of rotation.
 #[inline(always)]
-fn hold(rows: &mut Rows, s: &State, id: usize, [body1, body2]: [usize; 2], error: &[f64]) {
+fn hold(rows: &mut RowAppender, s: &State, id: usize, [body1, body2]: [usize; 2], error: &[f64]) {
     let model = rows.model;
     // MuJoCo drops an equality that no degree of freedom can do anything about, which it sees only where the Jacobian is
     // dense: the forces of rows that it keeps move nothing, but torque sensors feel them

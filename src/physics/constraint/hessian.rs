@@ -1,6 +1,6 @@
 //! The Hessian `M + J' C J` of an island: sparsity, assembly, factorisation.
 
-use crate::constraint::cone::Zone;
+use crate::constraint::cone::ConeZone;
 use crate::constraint::island::Island;
 use crate::constraint::jacobian::Jacobian;
 use crate::constraint::{Efc, MAX_ROWS};
@@ -43,7 +43,7 @@ pub(super) struct Hessian {
     changed: Vec<bool>,
     /// Curvatures and zones of the last assembly.
     weight: Vec<Lanes>,
-    zone: Vec<Zone>,
+    zone: Vec<ConeZone>,
     weighted: Vec<Lanes>,
 }
 
@@ -77,7 +77,7 @@ impl Hessian {
         }
     }
 
-    /// Assembles and factorises what has changed.
+    /// Assembles and factorises the rows that have changed.
     #[inline(always)]
     pub(super) fn refresh(&mut self, island: &Island, efc: &Efc) {
         self.find_changes(island);
@@ -128,7 +128,7 @@ impl Hessian {
         for ((c, j), zone) in island.cones.iter().zip(&self.zone) {
             // on the surface the curvature turns with every step; in the quadratic zone it is constant, in the flat one
             // nothing
-            if c.zone != *zone || c.zone == Zone::Surface {
+            if c.zone != *zone || c.zone == ConeZone::Surface {
                 for &c in island.cols(j) {
                     self.changed[c as usize] = true;
                 }
@@ -190,10 +190,10 @@ impl Hessian {
         for (c, j) in &island.cones {
             // a constraint that has not changed is added again to the changed rows among its own, as those start from
             // the inertia
-            if c.zone == Zone::Flat || !self.touches_changed(island, j) {
+            if c.zone == ConeZone::Flat || !self.touches_changed(island, j) {
                 continue;
             }
-            if c.zone == Zone::Quadratic {
+            if c.zone == ConeZone::Quadratic {
                 self.weigh_diagonal(j.values(efc), &c.d, j.dim);
             } else {
                 self.weigh(j.values(efc), &c.curvature(), j.dim);

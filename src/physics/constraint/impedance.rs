@@ -32,6 +32,7 @@ pub(super) fn is_solref(solref: [f64; 2]) -> bool {
 /// counts as `least`, s. `solimp` is (dmin, dmax, width, midpoint,
 /// power): the impedance grows from dmin to dmax as `|pos|` goes from 0 to width, along two power curves that meet at
 /// the midpoint. `pos` is the violation, m or rad.
+#[doc(alias = "mj_makeImpedance")]
 #[inline(always)]
 pub fn impedance(solref: [f64; 2], solimp: [f64; 5], pos: f64, least: f64) -> Impedance {
     let mixed = (solref[0] > 0.0) != (solref[1] > 0.0);
@@ -111,7 +112,7 @@ fn pow_three_halves(x: f64) -> Option<f64> {
     (up == down).then_some(up)
 }
 
-/// Returns a product and what rounding took from it (Dekker 1971).
+/// Returns a product and its rounding error (Dekker 1971).
 fn product(a: f64, b: f64) -> (f64, f64) {
     let halves = |v: f64| {
         let c = 134_217_729.0 * v;

@@ -1,7 +1,7 @@
-//! The problem of one island, in lanes: what the solver minimises, and its value, force and slopes at a point.
+//! The problem of one island, in lanes: the cost, its force and its derivatives at a point.
 
-use crate::constraint::cone::{Cone, Zone};
-use crate::constraint::jacobian::{Jacobian, Single, add_transposed_product, product};
+use crate::constraint::cone::{ConeZone, FrictionCone};
+use crate::constraint::jacobian::{Jacobian, SingleDofRow, add_transposed_product, product};
 use crate::constraint::scalar_rows::{NO_ROWS, NONE, ScalarRows};
 use crate::constraint::{Block, ConstraintType, Efc, MAX_ROWS};
 use crate::state::State;
@@ -39,11 +39,11 @@ pub(super) struct Island {
     pub(super) friction_tiles: usize,
     pub(super) scalar_rows: Vec<ScalarRows>,
     /// Rows on one degree of freedom, which stand after dry friction.
-    pub(super) singles: Vec<Single>,
+    pub(super) singles: Vec<SingleDofRow>,
     /// Rows on several degrees of freedom: first row in `scalar_rows`, Jacobian.
     pub(super) several: Vec<(usize, Jacobian)>,
     /// Contacts with friction.
-    pub(super) cones: Vec<(Cone, Jacobian)>,
+    pub(super) cones: Vec<(FrictionCone, Jacobian)>,
     /// Tiles of the Jacobians' columns, ascending for each.
     cols: Vec<u32>,
 
@@ -89,6 +89,7 @@ impl Island {
     }
 
     /// Reads the trees and blocks (indices into `efc.blocks`) of an island.
+    #[doc(alias = "mj_island")]
     #[inline(always)]
     pub(super) fn load(&mut self, topology: &Topology, trees: &[usize], blocks: &[u32], efc: &Efc, s: &State) {
         self.load_trees(topology, trees, s);
@@ -171,7 +172,7 @@ impl Island {
                 self.scalar_rows[slot / 4].set(slot % 4, efc, b.row, b);
             } else if b.kind == ConstraintType::ContactElliptic {
                 let jacobian = self.load_jacobian(topology, b, efc);
-                self.cones.push((Cone::new(b, efc), jacobian));
+                self.cones.push((FrictionCone::new(b, efc), jacobian));
             } else {
                 for k in 0..b.dim {
                     // rows are packed without regard to their blocks, as a row is evaluated without its neighbours
@@ -184,7 +185,7 @@ impl Island {
                 if let Some(dof) = b.dof {
                     let slot = self.slot(topology, dof as usize);
                     let value = efc.jac[b.jac][slot % 4];
-                    self.singles.push(Single { row, slot, value });
+                    self.singles.push(SingleDofRow { row, slot, value });
                 } else {
                     let jacobian = self.load_jacobian(topology, b, efc);
                     self.several.push((row, jacobian));
@@ -336,7 +337,7 @@ impl Island {
         }
         for (c, j) in &self.cones {
             // an open contact has no force
-            if c.zone != Zone::Flat {
+            if c.zone != ConeZone::Flat {
                 add_transposed_product(&self.cols, &efc.jac, j, &c.force, out);
             }
         }

@@ -7,7 +7,7 @@ use crate::tiles::{Lanes, total};
 
 /// A row on one degree of freedom.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Single {
+pub(super) struct SingleDofRow {
     /// Its place in the scalar rows.
     pub(super) row: usize,
     /// Lane of the degree of freedom.

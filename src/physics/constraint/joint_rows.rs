@@ -1,14 +1,15 @@
 //! The rows of joints' limits.
 
 use super::ConstraintType;
-use super::append::{Rows, Spec};
+use super::append::{RowAppender, RowParameters};
 use crate::math::{QUAT_ID, quat_at, quat_normalize, rotation_between, unit};
 use crate::model::JointType;
 use crate::state::State;
 
 /// Appends a row for each limit of a joint that is within its margin.
+#[doc(alias = "mj_instantiateLimit")]
 #[inline(always)]
-pub fn joint_limits(rows: &mut Rows, s: &State) {
+pub fn joint_limits(rows: &mut RowAppender, s: &State) {
     let model = rows.model;
     for j in 0..model.njnt() {
         if !model.jnt_limited[j] {
@@ -23,7 +24,7 @@ pub fn joint_limits(rows: &mut Rows, s: &State) {
         for (side, limit) in [(-1.0, model.jnt_range[j][0]), (1.0, model.jnt_range[j][1])] {
             let dist = side * (limit - value);
             if dist < margin {
-                let spec = Spec {
+                let spec = RowParameters {
                     solref: model.jnt_solref[j],
                     solimp: model.jnt_solimp[j],
                     diag: s.params.dof_invweight0[d],
@@ -37,14 +38,14 @@ pub fn joint_limits(rows: &mut Rows, s: &State) {
 
 /// Appends a row if a ball joint is within the margin of the angle that it may turn by, about any axis.
 #[inline(never)]
-fn ball_limit(rows: &mut Rows, s: &State, j: usize) {
+fn ball_limit(rows: &mut RowAppender, s: &State, j: usize) {
     let model = rows.model;
     let quat = quat_normalize(quat_at(&s.qpos, model.jnt_qposadr[j]));
     let (axis, angle) = unit(rotation_between(QUAT_ID, quat));
     let (margin, d, [low, high]) = (model.jnt_margin[j], model.jnt_dofadr[j], model.jnt_range[j]);
     let dist = low.max(high) - angle;
     if dist < margin {
-        let spec = Spec {
+        let spec = RowParameters {
             solref: model.jnt_solref[j],
             solimp: model.jnt_solimp[j],
             diag: s.params.dof_invweight0[d],

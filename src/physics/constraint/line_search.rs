@@ -85,12 +85,12 @@ impl LineSearch<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::constraint::cone::Cone;
+    use crate::constraint::cone::FrictionCone;
     use crate::constraint::jacobian::Jacobian;
     use crate::constraint::{Block, ConeShape, ConstraintType, Efc};
 
     /// Builds a contact that slides more and more slowly along the line, and turns round at `turn`.
-    fn turning(d: f64, mu: f64, pressed: f64, [turn, aside]: [f64; 2]) -> (Cone, Jacobian) {
+    fn turning(d: f64, mu: f64, pressed: f64, [turn, aside]: [f64; 2]) -> (FrictionCone, Jacobian) {
         let block = Block {
             kind: ConstraintType::ContactElliptic,
             dim: 3,
@@ -107,7 +107,7 @@ mod tests {
             cones: vec![shape],
             ..Efc::default()
         };
-        let mut cone = Cone::new(&block, &efc);
+        let mut cone = FrictionCone::new(&block, &efc);
         cone.jar[..3].copy_from_slice(&[-pressed, -turn, aside]);
         cone.jv[1] = 1.0;
         cone.prepare_line();

@@ -30,9 +30,9 @@ mod view;
 mod weld;
 
 pub use contact_force::contact_forces;
-pub use dual::Dual;
+pub use dual::DualSolver;
 pub use impedance::impedance;
-pub use newton::Newton;
+pub use newton::NewtonSolver;
 pub use rows::RowBuilder;
 pub use view::EfcRow;
 pub use weld::Weld;
@@ -114,7 +114,7 @@ pub struct Efc {
     pub blocks: Vec<Block>,
     /// Tiles of degrees of freedom ([`Topology::tiles`]) in which each block has entries, ascending.
     pub cols: Vec<u32>,
-    /// Friction of contacts, apart from blocks, of which most are of one degree of freedom: each is written in each step.
+    /// Friction of contacts. It is kept apart from blocks, which are written in each step and mostly have one degree of freedom.
     pub cones: Vec<ConeShape>,
     /// Jacobian values of each block: for each of its tiles, `dim` rows.
     pub jac: Vec<Lanes>,

@@ -2,8 +2,8 @@
 
 use std::ops::Range;
 
-use crate::constraint::cone::Cone;
-use crate::constraint::conjugate::Conjugate;
+use crate::constraint::cone::FrictionCone;
+use crate::constraint::conjugate::ConjugateGradient;
 use crate::constraint::hessian::Hessian;
 use crate::constraint::island::{AlongSearch, Island};
 use crate::constraint::line_search::LineSearch;
@@ -17,10 +17,10 @@ use crate::vectorize::vectorize;
 
 /// Solves for the accelerations under constraints; holds the working memory.
 #[derive(Clone, Debug, Default)]
-pub struct Newton {
+pub struct NewtonSolver {
     island: Island,
     hessian: Hessian,
-    conjugate: Conjugate,
+    conjugate: ConjugateGradient,
     /// Union-find over trees.
     parent: Vec<usize>,
     /// The next tree of the same island, ascending; the number of trees after the last.
@@ -35,14 +35,14 @@ pub struct Newton {
     block_adr: Vec<usize>,
 }
 
-impl Newton {
+impl NewtonSolver {
     /// Reserves memory for the degrees of freedom of a model and `contacts` contacts, so that solving need not allocate.
     pub fn with_capacity(topology: &Topology, nv: usize, contacts: usize) -> Self {
         let blocks = contacts + 4 * nv;
         Self {
             island: Island::with_capacity(topology.tiles.tiles(), nv, contacts),
             hessian: Hessian::with_capacity(nv, contacts),
-            conjugate: Conjugate::with_capacity(nv),
+            conjugate: ConjugateGradient::with_capacity(nv),
             parent: Vec::with_capacity(nv),
             next: Vec::with_capacity(nv),
             trees: Vec::with_capacity(nv),
@@ -55,6 +55,7 @@ impl Newton {
     /// Computes `qacc, qfrc_constraint`, the row forces and the contact forces. Starts from `qacc_warmstart` or
     /// `qacc_smooth`, whichever costs less, and stops when the improvement or the gradient, scaled by the mean inertia,
     /// falls below `opt.tolerance`. `bodies` must be up to date.
+    #[doc(alias("mj_fwdConstraint", "mj_solNewton"))]
     #[inline(always)]
     pub fn solve(&mut self, model: &Model, topology: &Topology, bodies: &mut Articulated, s: &mut State) {
         s.qacc.copy_from_slice(&s.qacc_smooth);
@@ -171,7 +172,11 @@ impl Newton {
     /// by the inertia's inverse.
     #[inline(always)]
     fn rests(&self, topology: &Topology, s: &State, length: f64) -> bool {
-        let mobility: f64 = self.trees.iter().map(|&t| topology.mobility(&s.params, t)).sum();
+        let mobility: f64 = self
+            .trees
+            .iter()
+            .map(|&t| topology.mobility(&s.params.dof_invweight0, t))
+            .sum();
         mobility > 0.0 && length * length * mobility < MINVAL
     }
 
@@ -266,7 +271,7 @@ const BALANCED: f64 = 1e-6;
 /// Computes the forces of a contact or weld that nothing can move: those that its rows ask for at no acceleration.
 fn push_alone(b: &Block, efc: &mut Efc) {
     if b.kind == ConstraintType::ContactElliptic {
-        let mut cone = Cone::new(b, efc);
+        let mut cone = FrictionCone::new(b, efc);
         cone.jar = cone.aref.map(|a| -a);
         cone.evaluate();
         efc.force[b.row..b.row + b.dim].copy_from_slice(&cone.force[..b.dim]);

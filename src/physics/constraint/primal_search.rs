@@ -1,6 +1,6 @@
 //! MuJoCo's own line search, step by step.
 //!
-//! Where a search converges, any exact one ends at the same point. Where `ls_iterations` cuts it off, what comes out depends
+//! Where a search converges, any exact one ends at the same point. Where `ls_iterations` cuts it off, the result depends
 //! on which points it looked at, so models that allow few iterations are searched as MuJoCo 3.3.0 does it: Newton steps
 //! from zero until the slope changes its sign, then both ends of the bracket and its middle until one of them is flat.
 
@@ -9,31 +9,31 @@ use crate::math::MINVAL;
 
 /// A point on the line: step length, cost (up to a constant), and its first and second derivative.
 #[derive(Clone, Copy)]
-struct Point {
+struct LinePoint {
     alpha: f64,
     cost: f64,
     slope: f64,
     curvature: f64,
 }
 
-impl Point {
+impl LinePoint {
     /// Returns where Newton's method goes from here.
     fn newton(&self) -> f64 {
         self.alpha - self.slope / self.curvature
     }
 }
 
-/// Evaluates points and counts them.
-struct Probe<'a> {
+/// Evaluates points on the line and counts the evaluations.
+struct PointEvaluator<'a> {
     line: &'a LineSearch<'a>,
     count: usize,
 }
 
-impl Probe<'_> {
-    fn at(&mut self, alpha: f64) -> Point {
+impl PointEvaluator<'_> {
+    fn at(&mut self, alpha: f64) -> LinePoint {
         self.count += 1;
         let (slope, curvature) = self.line.derivatives(alpha);
-        Point {
+        LinePoint {
             alpha,
             cost: self.line.cost(alpha),
             slope,
@@ -43,7 +43,7 @@ impl Probe<'_> {
 
     /// Moves an end of the bracket to the candidates on its side that are flatter, and `next` to where Newton's method goes
     /// from there. Returns whether it moved.
-    fn narrow(&mut self, end: &mut Point, candidates: &[Point; 3], next: &mut Point) -> bool {
+    fn narrow(&mut self, end: &mut LinePoint, candidates: &[LinePoint; 3], next: &mut LinePoint) -> bool {
         let mut moved = false;
         for c in candidates {
             let rises = end.slope < 0.0 && c.slope < 0.0 && end.slope < c.slope;
@@ -63,7 +63,7 @@ impl LineSearch<'_> {
     /// Finds a step length with a slope below `tolerance` in at most about `iterations` evaluations (MuJoCo's `PrimalSearch`);
     /// 0 if nothing better than standing still was found.
     pub(super) fn follow(&self, tolerance: f64, iterations: usize) -> f64 {
-        let mut probe = Probe { line: self, count: 0 };
+        let mut probe = PointEvaluator { line: self, count: 0 };
         let start = probe.at(0.0);
         let mut near = probe.at(start.newton());
         if start.cost < near.cost {

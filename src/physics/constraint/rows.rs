@@ -1,13 +1,13 @@
 //! Construction of the constraint rows.
 
-use super::append::{Rows, Spec};
+use super::append::{RowAppender, RowParameters};
 use super::contact_rows::contact;
 use super::equality_rows::equalities;
 use super::jacobian::{Jacobian, product};
 use super::joint_rows::joint_limits;
 use super::tendon_rows::{tendon_friction, tendon_limits};
 use super::{Block, ConstraintType, Efc, MAX_ROWS};
-use crate::dynamics::Composite;
+use crate::dynamics::CompositeInertia;
 use crate::model::Model;
 use crate::state::State;
 use crate::tiles::Lanes;
@@ -27,7 +27,7 @@ impl RowBuilder {
     /// Prepares the rows of `model` that are always the same.
     pub fn new(model: &Model, topology: &Topology) -> Self {
         let mut friction = Efc::default();
-        let mut rows = Rows {
+        let mut rows = RowAppender {
             model,
             topology,
             axes: &[],
@@ -36,7 +36,7 @@ impl RowBuilder {
         for d in 0..model.nv {
             let loss = model.dof_frictionloss[d];
             if loss > 0.0 {
-                let spec = Spec {
+                let spec = RowParameters {
                     solref: model.dof_solref[d],
                     solimp: model.dof_solimp[d],
                     diag: model.dof_invweight0[d],
@@ -55,8 +55,9 @@ impl RowBuilder {
 
     /// Fills `s.efc` from the position stage, the contacts and `qvel`: equalities, friction loss, limits of joints and
     /// tendons, contacts.
+    #[doc(alias = "mj_makeConstraint")]
     #[inline(always)]
-    pub fn build(&mut self, model: &Model, topology: &Topology, composite: &Composite, s: &mut State) {
+    pub fn build(&mut self, model: &Model, topology: &Topology, composite: &CompositeInertia, s: &mut State) {
         let mut efc = std::mem::take(&mut s.efc);
         efc.clear();
         let flags = &model.opt.flags;
@@ -65,7 +66,7 @@ impl RowBuilder {
             return;
         }
         topology.to_lanes(&s.qvel, &mut self.qvel);
-        let mut rows = Rows {
+        let mut rows = RowAppender {
             model,
             topology,
             axes: &composite.axes,
@@ -82,6 +83,7 @@ impl RowBuilder {
             joint_limits(&mut rows, s);
             tendon_limits(&mut rows, s);
         }
+        // last, as in MuJoCo: Gauss and Seidel's method visits rows in this order
         for i in 0..s.contact.len() {
             contact(&mut rows, s, i);
         }
@@ -114,6 +116,7 @@ impl RowBuilder {
         for (b, damping) in f.blocks.iter().zip(&self.damping) {
             let v = s.qvel[b.id];
             efc.vel.push(v);
+            // not `-damping * v`, which is a negative zero at rest, where MuJoCo's is positive
             efc.aref.push(0.0 - damping * v);
         }
     }

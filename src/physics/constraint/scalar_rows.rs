@@ -7,7 +7,7 @@ use crate::tiles::{Lanes, total};
 pub(super) const NONE: u32 = u32::MAX;
 
 /// Four rows whose force is `-d jar`, clamped: by nothing (equalities), to the dry friction, to one sign (limits and
-/// contacts without friction). Rows that are not there are zero.
+/// contacts without friction). Missing rows are zero.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct ScalarRows {
     /// Inverse of the regularisation.

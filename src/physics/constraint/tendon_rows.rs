@@ -1,12 +1,17 @@
 //! The rows of tendons: dry friction and limits.
 
 use super::ConstraintType;
-use super::append::{Rows, Spec};
+use super::append::{RowAppender, RowParameters};
 use crate::state::State;
 
 /// Starts a block with one row on the lengths of tendons, each with a scale. Returns whether there is one: as with equalities without
 /// effect, MuJoCo drops a row that nothing moves, where the Jacobian is dense.
-pub fn tendons(rows: &mut Rows, s: &State, (kind, id): (ConstraintType, usize), scales: &[(usize, f64)]) -> bool {
+pub fn tendons(
+    rows: &mut RowAppender,
+    s: &State,
+    (kind, id): (ConstraintType, usize),
+    scales: &[(usize, f64)],
+) -> bool {
     let (model, topology) = (rows.model, rows.topology);
     rows.block(kind, id, 1);
     let row = |k: usize| match scales.get(k) {
@@ -44,13 +49,14 @@ pub fn tendons(rows: &mut Rows, s: &State, (kind, id): (ConstraintType, usize), 
 }
 
 /// Appends a row for each tendon that has dry friction.
+#[doc(alias = "mj_instantiateFriction")]
 #[inline(always)]
-pub fn tendon_friction(rows: &mut Rows, s: &State) {
+pub fn tendon_friction(rows: &mut RowAppender, s: &State) {
     let model = rows.model;
     for t in 0..model.ntendon() {
         let loss = model.tendon_frictionloss[t];
         if loss > 0.0 && tendons(rows, s, (ConstraintType::FrictionTendon, t), &[(t, 1.0)]) {
-            let spec = Spec {
+            let spec = RowParameters {
                 solref: model.tendon_solref_fri[t],
                 solimp: model.tendon_solimp_fri[t],
                 diag: model.tendon_invweight0[t],
@@ -66,8 +72,9 @@ pub fn tendon_friction(rows: &mut Rows, s: &State) {
 }
 
 /// Appends a row for each limit of a tendon that is within its margin.
+#[doc(alias = "mj_instantiateLimit")]
 #[inline(always)]
-pub fn tendon_limits(rows: &mut Rows, s: &State) {
+pub fn tendon_limits(rows: &mut RowAppender, s: &State) {
     let model = rows.model;
     for t in 0..model.ntendon() {
         if !model.tendon_limited[t] {
@@ -75,7 +82,7 @@ pub fn tendon_limits(rows: &mut Rows, s: &State) {
         }
         let length = s.ten_length[t];
         let margin = model.tendon_margin[t];
-        let spec = Spec {
+        let spec = RowParameters {
             solref: model.tendon_solref_lim[t],
             solimp: model.tendon_solimp_lim[t],
             diag: model.tendon_invweight0[t],

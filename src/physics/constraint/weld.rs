@@ -4,7 +4,7 @@ use crate::math::*;
 use crate::model::{EqualityKind, Model};
 use crate::state::State;
 
-/// The pose error of a weld and what its Jacobian needs.
+/// The pose error of a weld and the quantities of its Jacobian.
 #[derive(Clone, Copy, Debug)]
 pub struct Weld {
     /// Constrained point as body 1 carries it, world, m.

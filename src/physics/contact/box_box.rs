@@ -2,74 +2,17 @@
 
 use super::box_edge::edge_points;
 use super::box_face::face_points;
+use super::box_frame::{BoxFace, BoxPoint, EdgePair, RelativePose};
 use super::{ContactPoint, PlacedGeom, Quirks, dot, frame, sub};
-use crate::math::{MINVAL, Mat3, Vec3, mat_mul, mat_t_vec, mat_vec, row, transpose, unit};
+use crate::math::{MINVAL, Mat3, Vec3, mat_t_vec, mat_vec, row, unit};
 
 /// Greatest number of points of one pair: 16 crossings of edges with sides and 8 corners.
 pub(super) const MAX_POINTS: usize = 24;
 
-/// A point where two boxes meet, before the clean-up.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct BoxPoint {
-    pub(super) dist: f64,
-    pub(super) pos: Vec3,
-}
-
-/// The pose of two boxes relative to each other.
-pub(super) struct Relative {
-    /// Columns: axes of the second box in the frame of the first.
-    pub(super) rot: Mat3,
-    /// Rows: axes of the second box in the frame of the first.
-    pub(super) rot_t: Mat3,
-    /// Absolute values of `rot`.
-    pub(super) abs: Mat3,
-    /// Centre of the second box in the frame of the first.
-    pub(super) second_from_first: Vec3,
-    /// Centre of the first box in the frame of the second.
-    pub(super) first_from_second: Vec3,
-}
-
-impl Relative {
-    fn new(a: &PlacedGeom, b: &PlacedGeom) -> Self {
-        let rot = mat_mul(&transpose(a.mat), b.mat);
-        Relative {
-            rot,
-            rot_t: transpose(&rot),
-            abs: rot.map(f64::abs),
-            second_from_first: mat_t_vec(a.mat, sub(b.pos, a.pos)),
-            first_from_second: mat_t_vec(b.mat, sub(a.pos, b.pos)),
-        }
-    }
-}
-
-/// A face of a box.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Face {
-    pub(super) axis: usize,
-    pub(super) negative: bool,
-}
-
-/// A pair of edges that cross, one of each box.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct EdgePair {
-    /// Axis of the first box along its edge.
-    pub(super) first: usize,
-    /// Axis of the second box along its edge.
-    pub(super) second: usize,
-    /// Unit normal in the frame of the first box.
-    pub(super) normal: Vec3,
-    /// Whether the normal points from the second box to the first.
-    pub(super) reversed: bool,
-    /// Sides of the first box on which the edge lies; bit k is set on the positive side of axis k.
-    pub(super) first_sides: usize,
-    /// Sides of the second box on which the edge lies.
-    pub(super) second_sides: usize,
-}
-
 /// The axis along which two boxes overlap least.
 enum LeastAxis {
-    FirstFace(Face),
-    SecondFace(Face),
+    FirstFace(BoxFace),
+    SecondFace(BoxFace),
     Edges(EdgePair),
 }
 
@@ -82,7 +25,7 @@ pub(super) fn box_box(
     points: &mut Vec<BoxPoint>,
     out: &mut Vec<ContactPoint>,
 ) {
-    let relative = Relative::new(a, b);
+    let relative = RelativePose::new(a, b);
     let Some(axis) = least_axis(a.size, b.size, &relative, margin) else {
         return;
     };
@@ -109,7 +52,7 @@ pub(super) fn box_box(
 }
 
 /// Finds the axis of least overlap among the 15 that can separate two boxes; `None` if one keeps them apart.
-fn least_axis(size1: Vec3, size2: Vec3, relative: &Relative, margin: f64) -> Option<LeastAxis> {
+fn least_axis(size1: Vec3, size2: Vec3, relative: &RelativePose, margin: f64) -> Option<LeastAxis> {
     let mut least = margin;
     for k in 0..3 {
         // more than any overlap can be, so that the first axis is always an improvement
@@ -132,7 +75,7 @@ fn least_axis(size1: Vec3, size2: Vec3, relative: &Relative, margin: f64) -> Opt
 struct AxisSearch<'a> {
     size1: Vec3,
     size2: Vec3,
-    relative: &'a Relative,
+    relative: &'a RelativePose,
     margin: f64,
     /// Least overlap so far, m.
     least: f64,
@@ -155,12 +98,12 @@ impl AxisSearch<'_> {
             if overlap1 < self.least {
                 self.least = overlap1;
                 let negative = p21[axis] < 0.0;
-                self.best = Some(LeastAxis::FirstFace(Face { axis, negative }));
+                self.best = Some(LeastAxis::FirstFace(BoxFace { axis, negative }));
             }
             if overlap2 < self.least {
                 self.least = overlap2;
                 let negative = p12[axis] < 0.0;
-                self.best = Some(LeastAxis::SecondFace(Face { axis, negative }));
+                self.best = Some(LeastAxis::SecondFace(BoxFace { axis, negative }));
             }
         }
         Some(())
@@ -235,95 +178,6 @@ impl AxisSearch<'_> {
             second_sides,
         }
     }
-}
-
-/// The frame of a box with its axes permuted and reflected such that one face is at +z.
-pub(super) struct FaceFrame {
-    /// Axis of the box along each axis of the frame.
-    axis: [usize; 3],
-    /// Sign of that axis.
-    sign: Vec3,
-}
-
-impl FaceFrame {
-    /// Returns the frame in which a face is at +z.
-    pub(super) fn new(face: Face) -> Self {
-        let (axis, sign) = match (face.axis, face.negative) {
-            (0, false) => ([2, 1, 0], [-1.0, 1.0, 1.0]),
-            (1, false) => ([0, 2, 1], [1.0, -1.0, 1.0]),
-            (_, false) => ([0, 1, 2], [1.0, 1.0, 1.0]),
-            (0, true) => ([2, 1, 0], [1.0, 1.0, -1.0]),
-            (1, true) => ([0, 2, 1], [1.0, 1.0, -1.0]),
-            (_, true) => ([0, 1, 2], [-1.0, 1.0, -1.0]),
-        };
-        Self { axis, sign }
-    }
-
-    /// Rotates a vector from the box frame to the face frame.
-    #[inline(always)]
-    pub(super) fn vector(&self, v: Vec3) -> Vec3 {
-        [0, 1, 2].map(|k| v[self.axis[k]] * self.sign[k])
-    }
-
-    /// Returns the half sizes in the face frame.
-    #[inline(always)]
-    pub(super) fn sizes(&self, size: Vec3) -> Vec3 {
-        self.vector(size).map(f64::abs)
-    }
-
-    /// Returns the orientation of the face frame, given that of the box.
-    #[inline(always)]
-    pub(super) fn orientation(&self, mat: &Mat3) -> Mat3 {
-        let mut rotated = [0.0; 9];
-        for i in 0..3 {
-            for k in 0..3 {
-                rotated[3 * i + k] = mat[3 * i + self.axis[k]] * self.sign[k];
-            }
-        }
-        rotated
-    }
-}
-
-/// The crossing of an edge with a side of the face rectangle.
-pub(super) struct Crossing {
-    /// Coordinate that is constant on the side: 0 or 1.
-    pub(super) axis: usize,
-    /// Value of that coordinate on the side.
-    pub(super) side: f64,
-    /// Position on the edge, 0..1.
-    pub(super) t: f64,
-    /// The other coordinate of the crossing.
-    pub(super) other: f64,
-}
-
-/// Passes the crossings of the edge from `start` along `dir` with the sides of the rectangle of half sizes `size` to
-/// `found`: -x, +x, -y, +y.
-#[inline(always)]
-pub(super) fn crossings(start: Vec3, dir: Vec3, size: &Vec3, mut found: impl FnMut(Crossing)) {
-    for axis in 0..2 {
-        if dir[axis].abs() > MINVAL {
-            let inverse = 1.0 / dir[axis];
-            for sign in [-1.0, 1.0] {
-                let side = size[axis] * sign;
-                let t = (side - start[axis]) * inverse;
-                if !(0.0..=1.0).contains(&t) {
-                    continue;
-                }
-                let other = start[1 - axis] + dir[1 - axis] * t;
-                if other.abs() > size[1 - axis] {
-                    continue;
-                }
-                found(Crossing { axis, side, t, other });
-            }
-        }
-    }
-}
-
-/// Returns the corners of the face rectangle in MuJoCo's order.
-#[inline(always)]
-pub(super) fn rectangle(size: &Vec3) -> [[f64; 2]; 4] {
-    let [x, y, _] = *size;
-    [[-x, -y], [-x, y], [x, -y], [x, y]]
 }
 
 /// The margins of clearly outside and clearly inside a box.

@@ -5,7 +5,7 @@
 //! the second box, spanned by its edge and the flatter one of the other axes, is projected along the normal onto the
 //! reference face.
 
-use super::box_box::{BoxPoint, EdgePair, Face, FaceFrame, Relative, crossings, rectangle};
+use super::box_frame::{BoxFace, BoxPoint, EdgePair, FaceFrame, RelativePose, crossings, rectangle};
 use super::{PlacedGeom, Quirks, add_scaled, dot, sub};
 use crate::math::{MINVAL, Vec3, add, mat_vec, row, scale};
 
@@ -42,7 +42,7 @@ fn signed_root(distance2: f64, height: f64) -> f64 {
 /// Returns the axes of the faces that hold the edges: of the second box the flatter and the steeper one along the normal,
 /// of the first the one of the reference face.
 #[inline(always)]
-fn face_axes(relative: &Relative, edges: &EdgePair) -> (usize, usize, usize) {
+fn face_axes(relative: &RelativePose, edges: &EdgePair) -> (usize, usize, usize) {
     let (first, second) = (edges.first, edges.second);
     // The normal is across both edges. Of two axes across the second edge, the one more along the first edge is
     // therefore less along the normal, and likewise with the boxes exchanged.
@@ -63,7 +63,7 @@ fn face_axes(relative: &Relative, edges: &EdgePair) -> (usize, usize, usize) {
 #[inline(always)]
 fn face_corners(
     b: &PlacedGeom,
-    relative: &Relative,
+    relative: &RelativePose,
     edges: &EdgePair,
     frame: &FaceFrame,
     centre: Vec3,
@@ -89,14 +89,14 @@ fn face_corners(
 pub(super) fn edge_points(
     a: &PlacedGeom,
     b: &PlacedGeom,
-    relative: &Relative,
+    relative: &RelativePose,
     edges: &EdgePair,
     margin: f64,
     quirks: &Quirks,
     points: &mut Vec<BoxPoint>,
 ) -> Vec3 {
     let (flat, steep, upright) = face_axes(relative, edges);
-    let frame = FaceFrame::new(Face {
+    let frame = FaceFrame::new(BoxFace {
         axis: upright,
         negative: edges.first_sides >> upright & 1 == 0,
     });
@@ -118,7 +118,7 @@ pub(super) fn edge_points(
     let per_height = 1.0 / normal[2];
     let projected = raw.map(|corner| add_scaled(corner, normal, -corner[2] * per_height));
 
-    let patch = Patch {
+    let patch = FacePatch {
         raw,
         projected,
         size,
@@ -147,7 +147,7 @@ pub(super) fn edge_points(
 }
 
 /// The face of the second box over the rectangle of the reference face.
-struct Patch {
+struct FacePatch {
     raw: [Vec3; 4],
     projected: [Vec3; 4],
     /// Half sizes of the rectangle.
@@ -156,7 +156,7 @@ struct Patch {
     depth_per_height: f64,
 }
 
-impl Patch {
+impl FacePatch {
     /// Collects the points where edges of the patch cross sides of the rectangle: halfway between edge and side.
     fn edges_across_sides(&self, margin: f64, collector: &mut Collector) {
         let [p, r] = [&self.projected, &self.raw];

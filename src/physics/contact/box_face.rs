@@ -2,7 +2,7 @@
 //!
 //! Everything happens in the frame of the reference box, rotated such that the face is at +z, with the origin on the face.
 
-use super::box_box::{BoxPoint, Face, FaceFrame, Relative, crossings, rectangle};
+use super::box_frame::{BoxFace, BoxPoint, FaceFrame, RelativePose, crossings, rectangle};
 use super::{PlacedGeom, Quirks, add_scaled, column};
 use crate::math::{Vec3, add, mat_vec, row, scale, transpose};
 
@@ -12,8 +12,8 @@ use crate::math::{Vec3, add, mat_vec, row, scale, transpose};
 pub(super) fn face_points(
     reference: &PlacedGeom,
     other: &PlacedGeom,
-    relative: &Relative,
-    face: Face,
+    relative: &RelativePose,
+    face: BoxFace,
     swapped: bool,
     margin: f64,
     quirks: &Quirks,
@@ -28,7 +28,7 @@ pub(super) fn face_points(
     };
     let mut corner = frame.vector(centre);
     corner[2] -= size[2];
-    let lowest = Lowest::new(corner, |k| frame.vector(row(&axes, k)), &other.size);
+    let lowest = LowestFeature::new(corner, |k| frame.vector(row(&axes, k)), &other.size);
 
     // a point of the face frame is kept when it is below the face, and given half of its height
     let orientation = frame.orientation(reference.mat);
@@ -48,13 +48,13 @@ pub(super) fn face_points(
 
 /// The lowest feature of the other box: its deepest corner, and up to two edges from it that are nearer to level than to
 /// upright.
-struct Lowest {
+struct LowestFeature {
     corner: Vec3,
     edges: [Vec3; 2],
     count: usize,
 }
 
-impl Lowest {
+impl LowestFeature {
     #[inline(always)]
     fn new(mut corner: Vec3, axis: impl Fn(usize) -> Vec3, size: &Vec3) -> Self {
         let mut edges = [[0.0; 3]; 2];

@@ -6,7 +6,7 @@ use super::{ContactPoint, PlacedGeom, Quirks, add_scaled, dot, push, sub};
 use crate::math::{MINVAL, Vec3, add, mat_t_vec, mat_vec, scale};
 
 /// A capsule's segment in the frame of the box: points `centre + t half` with t in -1..1.
-struct Segment {
+struct LocalSegment {
     centre: Vec3,
     axis: Vec3,
     half: Vec3,
@@ -19,7 +19,7 @@ struct Segment {
 /// The feature of the box that the segment is nearest to. A corner or edge is named by a mask: bit k is set on the
 /// positive side of axis k.
 #[derive(Clone, Copy)]
-enum Feature {
+enum BoxFeature {
     /// The face across this axis, nearest to an end of the segment (t = -1 or 1); `None` if the end is inside the box.
     Face { axis: Option<usize> },
     /// A corner.
@@ -29,17 +29,17 @@ enum Feature {
 }
 
 /// The nearest point on the segment found so far.
-struct Nearest {
+struct NearestPoint {
     distance2: f64,
     t: f64,
-    feature: Option<Feature>,
+    feature: Option<BoxFeature>,
 }
 
 /// Finds the contacts of a capsule and a box, at most two.
 pub(super) fn capsule_box(a: &PlacedGeom, b: &PlacedGeom, margin: f64, quirks: &Quirks, out: &mut Vec<ContactPoint>) {
     let axis = mat_t_vec(b.mat, a.axis());
     let half = scale(axis, a.size[1]);
-    let segment = Segment {
+    let segment = LocalSegment {
         centre: mat_t_vec(b.mat, sub(a.pos, b.pos)),
         axis,
         half,
@@ -48,7 +48,7 @@ pub(super) fn capsule_box(a: &PlacedGeom, b: &PlacedGeom, margin: f64, quirks: &
         size: b.size,
     };
     let s = b.size;
-    let mut nearest = Nearest {
+    let mut nearest = NearestPoint {
         distance2: margin + 2.0 * (a.size[0] + a.size[1] + s[0] + s[1] + s[2]),
         t: 0.0,
         feature: None,
@@ -71,7 +71,7 @@ pub(super) fn capsule_box(a: &PlacedGeom, b: &PlacedGeom, margin: f64, quirks: &
 
 /// A point of an edge: one of its corners or between them.
 #[derive(Clone, Copy)]
-enum At {
+enum EdgePoint {
     Lower,
     Middle,
     Upper,
@@ -95,7 +95,7 @@ struct NormalEquations {
 impl NormalEquations {
     /// Returns the position on the edge and that on the segment, each kept within -1..1, and the point of the edge.
     #[inline(always)]
-    fn solve(&self, quirks: &Quirks) -> (f64, f64, At) {
+    fn solve(&self, quirks: &Quirks) -> (f64, f64, EdgePoint) {
         let Self {
             m11,
             m12,
@@ -108,12 +108,12 @@ impl NormalEquations {
         } = *self;
         let mut position = (m22 * u - m12 * v) * inverse;
         let mut t = (m11 * v - m12 * u) * inverse;
-        let mut at = At::Middle;
+        let mut at = EdgePoint::Middle;
         if position > 1.0 {
-            (position, at) = (1.0, At::Upper);
+            (position, at) = (1.0, EdgePoint::Upper);
             t = (v - m12) * inverse22;
         } else if position < -1.0 {
-            (position, at) = (-1.0, At::Lower);
+            (position, at) = (-1.0, EdgePoint::Lower);
             t = (v + m12) * inverse22;
         }
         if t.abs() > 1.0 {
@@ -121,20 +121,20 @@ impl NormalEquations {
             // the end of the segment in place of the point beyond it: the nearest point of the edge moves with it
             position = (u - t * m12) * inverse11;
             if position > 1.0 {
-                (position, at) = (1.0, At::Upper);
+                (position, at) = (1.0, EdgePoint::Upper);
             } else if position < -1.0 {
-                (position, at) = (-1.0, At::Lower);
+                (position, at) = (-1.0, EdgePoint::Lower);
             } else if !quirks.stale_box_corner {
-                at = At::Middle;
+                at = EdgePoint::Middle;
             }
         }
         (position, t, at)
     }
 }
 
-impl Segment {
+impl LocalSegment {
     /// Tests the ends of the segment over a face or inside the box.
-    fn search_ends(&self, nearest: &mut Nearest) {
+    fn search_ends(&self, nearest: &mut NearestPoint) {
         for t in [-1.0, 1.0] {
             let end = add_scaled(self.centre, self.half, t);
             let mut clamped = end;
@@ -158,10 +158,10 @@ impl Segment {
             let away = sub(clamped, end);
             let distance2 = dot(away, away);
             if distance2 < nearest.distance2 {
-                *nearest = Nearest {
+                *nearest = NearestPoint {
                     distance2,
                     t,
-                    feature: Some(Feature::Face { axis }),
+                    feature: Some(BoxFeature::Face { axis }),
                 };
             }
         }
@@ -183,7 +183,7 @@ impl Segment {
     ///
     /// The axis is a constant so that no vector is indexed by a variable, which would keep it out of registers.
     #[inline(always)]
-    fn search_edges<const AXIS: usize>(&self, nearest: &mut Nearest, quirks: &Quirks) {
+    fn search_edges<const AXIS: usize>(&self, nearest: &mut NearestPoint, quirks: &Quirks) {
         let (s, h) = (self.size, self.half);
 
         // parts of the normal equations that the four edges share
@@ -227,11 +227,11 @@ impl Segment {
                 nearest.distance2 = distance2;
                 nearest.t = t;
                 nearest.feature = Some(match at {
-                    At::Lower => Feature::Corner { corner },
-                    At::Upper => Feature::Corner {
+                    EdgePoint::Lower => BoxFeature::Corner { corner },
+                    EdgePoint::Upper => BoxFeature::Corner {
                         corner: corner | 1 << AXIS,
                     },
-                    At::Middle => Feature::Edge {
+                    EdgePoint::Middle => BoxFeature::Edge {
                         axis: AXIS,
                         corner,
                         position,
@@ -247,11 +247,11 @@ impl Segment {
     }
 
     /// Returns how far in t a second contact lies from the first, which was found at `t`.
-    fn second_contact(&self, t: f64, feature: Feature) -> Option<f64> {
+    fn second_contact(&self, t: f64, feature: BoxFeature) -> Option<f64> {
         match feature {
-            Feature::Corner { corner } => self.second_from_corner(t, corner),
-            Feature::Edge { axis, corner, position } => self.second_from_edge(t, axis, corner, position),
-            Feature::Face { axis } => Some(self.second_from_face(t, axis?)),
+            BoxFeature::Corner { corner } => self.second_from_corner(t, corner),
+            BoxFeature::Edge { axis, corner, position } => self.second_from_edge(t, axis, corner, position),
+            BoxFeature::Face { axis } => Some(self.second_from_face(t, axis?)),
         }
     }
 

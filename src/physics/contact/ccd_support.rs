@@ -4,7 +4,7 @@ use std::cell::Cell;
 
 use super::fix_normal::fixed;
 use super::mesh::climb_from;
-use super::mpr::{Limits, mpr};
+use super::mpr::{MprLimits, mpr};
 use super::support::Support;
 use super::{BareContact, ContactOptions, PlacedGeom};
 use crate::math::{Vec3, add, mat_t_vec, mat_vec, scale, unit};
@@ -97,7 +97,7 @@ pub(super) fn convex(
         CcdSupport::new(a, margin, corners[0]),
         CcdSupport::new(b, margin, corners[1]),
     );
-    let limits = Limits {
+    let limits = MprLimits {
         tolerance: options.ccd_tolerance,
         iterations: options.ccd_iterations,
     };

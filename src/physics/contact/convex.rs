@@ -2,10 +2,10 @@
 //! cylinders and cylinders with boxes.
 
 use super::epa::{Overlap, epa};
-use super::gjk::{Limits, Simplex, gjk};
+use super::gjk::{GjkLimits, Simplex, gjk};
 use super::mesh::MeshShape;
 use super::polytope::Polytope;
-use super::support::{Ball, Capsule, Cuboid, Cylinder, Difference, Ellipsoid, Point, Segment, Support};
+use super::support::{Ball, Capsule, Cuboid, Cylinder, Ellipsoid, MinkowskiDifference, Point, Segment, Support};
 use super::{BIG, BareContact, ContactOptions, PlacedGeom, add_scaled, column, dot, sub};
 use crate::math::{Vec3, add, scale, unit};
 use crate::model::GeomType;
@@ -21,7 +21,7 @@ pub(super) fn convex(
 ) -> Option<BareContact> {
     use GeomType::{Box, Capsule as Pill, Cylinder as Rod, Ellipsoid as Egg, Mesh};
     let rod = |g| Cylinder::new(g, margin);
-    let mut find = Search {
+    let mut find = ConvexPair {
         a,
         b,
         margin,
@@ -38,8 +38,8 @@ pub(super) fn convex(
     }
 }
 
-/// Two geoms, and what to find their contact with.
-struct Search<'a, 'g> {
+/// Two convex geoms, with the options and buffers of the search for their contact.
+struct ConvexPair<'a, 'g> {
     a: &'a PlacedGeom<'g>,
     b: &'a PlacedGeom<'g>,
     margin: f64,
@@ -48,15 +48,15 @@ struct Search<'a, 'g> {
     overlap: &'a mut Option<Overlap>,
 }
 
-impl Search<'_, '_> {
+impl ConvexPair<'_, '_> {
     /// Finds the contact of a sphere or capsule, which is all that is near its `core`: from the distance of the core, which
     /// is exact, or, where the core is inside the other shape, from the overlap of the `whole`.
     #[inline(always)]
     fn rounded<O: Support>(&mut self, core: impl Support, whole: impl Support, other: O) -> Option<BareContact> {
-        let core = Difference { a: core, b: other };
+        let core = MinkowskiDifference { a: core, b: other };
         match shallow(&core, self.a, self.b, self.margin, self.options) {
-            Shallow::Known(touch) => touch,
-            Shallow::Unknown => self.deep(whole, core.b),
+            CoreContact::Known(touch) => touch,
+            CoreContact::Unknown => self.deep(whole, core.b),
         }
     }
 
@@ -92,7 +92,7 @@ impl Search<'_, '_> {
     /// Finds the overlap of two shapes.
     #[inline(always)]
     fn deep(&mut self, a: impl Support, b: impl Support) -> Option<BareContact> {
-        let shape = Difference { a, b };
+        let shape = MinkowskiDifference { a, b };
         let found = deep(&shape, self.a, self.b, self.options, self.polytope)?;
         *self.overlap = found;
         match found {
@@ -102,8 +102,8 @@ impl Search<'_, '_> {
     }
 }
 
-/// The distance between the core of a sphere or capsule, its centre or segment, and the other shape.
-enum Shallow {
+/// The result of GJK between the core of a sphere or capsule (its centre or segment) and the other shape.
+enum CoreContact {
     /// The core is outside: the contact, if there is one.
     Known(Option<BareContact>),
     /// The core itself touches the other shape.
@@ -113,14 +113,14 @@ enum Shallow {
 /// Finds the contact of a sphere or capsule whose core is outside the other shape: the distance from the core less the
 /// radius.
 fn shallow<A: Support, B: Support>(
-    core: &Difference<A, B>,
+    core: &MinkowskiDifference<A, B>,
     a: &PlacedGeom,
     b: &PlacedGeom,
     margin: f64,
     options: &ContactOptions,
-) -> Shallow {
+) -> CoreContact {
     let radius = a.size[0] + 0.5 * margin;
-    let limits = Limits {
+    let limits = GjkLimits {
         tolerance: options.ccd_tolerance,
         iterations: options.ccd_iterations,
         cutoff: radius,
@@ -129,25 +129,25 @@ fn shallow<A: Support, B: Support>(
     let closest = gjk(core, a.pos, b.pos, &limits, &mut Simplex::default());
     let outside = closest.distance > options.ccd_tolerance;
     if !outside {
-        return Shallow::Unknown;
+        return CoreContact::Unknown;
     }
     if closest.distance >= BIG {
-        return Shallow::Known(None);
+        return CoreContact::Known(None);
     }
     let (towards, _) = unit(sub(closest.b, closest.a));
     let surface = add_scaled(closest.a, towards, radius);
-    Shallow::Known(touch(closest.distance - radius, surface, closest.b, margin))
+    CoreContact::Known(touch(closest.distance - radius, surface, closest.b, margin))
 }
 
 /// Finds the overlap of two shapes, by GJK and EPA; `Some(None)` where they overlap and EPA finds no depth, which is a contact all the same.
 fn deep<A: Support, B: Support>(
-    shape: &Difference<A, B>,
+    shape: &MinkowskiDifference<A, B>,
     a: &PlacedGeom,
     b: &PlacedGeom,
     options: &ContactOptions,
     polytope: &mut Polytope,
 ) -> Option<Option<Overlap>> {
-    let limits = Limits {
+    let limits = GjkLimits {
         tolerance: options.ccd_tolerance,
         iterations: options.ccd_iterations,
         cutoff: 0.0,
@@ -177,7 +177,7 @@ fn touch(dist: f64, point_a: Vec3, point_b: Vec3, margin: f64) -> Option<BareCon
 /// Stands in for EPA: the least overlap along the axes of both geoms and the line of centres. The position is halfway
 /// between the two support planes, next to the middle of the centres.
 fn least_overlap_of_axes<A: Support, B: Support>(
-    shape: &Difference<A, B>,
+    shape: &MinkowskiDifference<A, B>,
     a: &PlacedGeom,
     b: &PlacedGeom,
     margin: f64,

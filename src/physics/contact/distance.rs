@@ -1,18 +1,18 @@
 //! The distance of two geoms, apart or in each other, and the points of both where it is measured (MuJoCo 3.3.0's `mj_geomDistance`).
 
 use super::epa::epa;
-use super::gjk::{Limits, Simplex, gjk};
+use super::gjk::{GjkLimits, Simplex, gjk};
 use super::mesh::MeshShape;
 use super::polytope::Polytope;
-use super::support::{Ball, Capsule, Cuboid, Cylinder, Difference, Ellipsoid, Point, Segment, Support};
+use super::support::{Ball, Capsule, Cuboid, Cylinder, Ellipsoid, MinkowskiDifference, Point, Segment, Support};
 use super::{BIG, ContactOptions, ContactPoint, PlacedGeom, Scratch, add_scaled, collide, sub};
 use crate::math::{Vec3, unit};
 use crate::model::GeomType;
 
-/// A distance, and the points between which it is measured.
+/// The distance of two geoms, and the points between which it is measured.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Span {
-    /// Distance, m; negative where the geoms are in each other.
+pub struct GeomDistance {
+    /// Distance, m; negative if the geoms overlap.
     pub dist: f64,
     /// Point of the first geom, m.
     pub from: Vec3,
@@ -23,6 +23,7 @@ pub struct Span {
 /// Measures the distance of two geoms as far as it is below `most`, m; `points` is working memory. Planes have no distance from planes.
 ///
 /// Where GJK and EPA measure it, MuJoCo has the points in the order of the types of the geoms, whichever is asked for first.
+#[doc(alias = "mj_geomDistance")]
 pub fn distance(
     first: &PlacedGeom,
     second: &PlacedGeom,
@@ -30,7 +31,7 @@ pub fn distance(
     options: &ContactOptions,
     scratch: &mut Scratch,
     points: &mut Vec<ContactPoint>,
-) -> Option<Span> {
+) -> Option<GeomDistance> {
     use GeomType::{Box, Capsule as Pill, Cylinder as Rod, Ellipsoid as Egg, Mesh, Sphere};
     let turned = first.kind > second.kind;
     let (a, b) = if turned { (second, first) } else { (first, second) };
@@ -42,7 +43,7 @@ pub fn distance(
     if !options.nativeccd {
         return of_contacts(a, b, turned, most, options, scratch, points);
     }
-    let mut find = Search {
+    let mut find = DistanceSearch {
         a,
         b,
         most,
@@ -85,29 +86,29 @@ fn of_contacts(
     options: &ContactOptions,
     scratch: &mut Scratch,
     points: &mut Vec<ContactPoint>,
-) -> Option<Span> {
+) -> Option<GeomDistance> {
     points.clear();
     collide(a, b, most, options, scratch, points);
     nearest(points, most, if turned { -1.0 } else { 1.0 })
 }
 
 /// Returns the span of the nearest of some contacts.
-fn nearest(points: &[ContactPoint], most: f64, sign: f64) -> Option<Span> {
+fn nearest(points: &[ContactPoint], most: f64, sign: f64) -> Option<GeomDistance> {
     let (mut dist, mut found) = (most, None);
     for point in points {
         if point.dist < dist {
             (dist, found) = (point.dist, Some(point));
         }
     }
-    found.map(|point| Span {
+    found.map(|point| GeomDistance {
         dist,
         from: add_scaled(point.pos, point.normal(), -0.5 * sign * dist),
         to: add_scaled(point.pos, point.normal(), 0.5 * sign * dist),
     })
 }
 
-/// Two convex geoms whose distance is looked for.
-struct Search<'a, 'g> {
+/// A search for the distance of two convex geoms.
+struct DistanceSearch<'a, 'g> {
     a: &'a PlacedGeom<'g>,
     b: &'a PlacedGeom<'g>,
     most: f64,
@@ -115,9 +116,9 @@ struct Search<'a, 'g> {
     polytope: &'a mut Polytope,
 }
 
-impl Search<'_, '_> {
-    fn limits(&self, grown: f64) -> Limits {
-        Limits {
+impl DistanceSearch<'_, '_> {
+    fn limits(&self, grown: f64) -> GjkLimits {
+        GjkLimits {
             tolerance: self.options.ccd_tolerance,
             iterations: self.options.ccd_iterations,
             cutoff: self.most + grown,
@@ -126,8 +127,8 @@ impl Search<'_, '_> {
     }
 
     /// Measures from a sphere or capsule, which is all that is near its `core`.
-    fn rounded(&mut self, core: &dyn Support, whole: &dyn Support, other: &dyn Support) -> Span {
-        let (core, radius) = (Difference { a: core, b: other }, self.a.size[0]);
+    fn rounded(&mut self, core: &dyn Support, whole: &dyn Support, other: &dyn Support) -> GeomDistance {
+        let (core, radius) = (MinkowskiDifference { a: core, b: other }, self.a.size[0]);
         let limits = self.limits(radius);
         let closest = gjk(&core, self.a.pos, self.b.pos, &limits, &mut Simplex::default());
         if closest.distance <= limits.tolerance {
@@ -135,7 +136,7 @@ impl Search<'_, '_> {
         }
         let (towards, _) = unit(sub(closest.b, closest.a));
         let dist = closest.distance - radius;
-        Span {
+        GeomDistance {
             dist: if dist > self.most { BIG } else { dist },
             from: add_scaled(closest.a, towards, radius),
             to: closest.b,
@@ -143,11 +144,11 @@ impl Search<'_, '_> {
     }
 
     /// Measures between whole shapes, apart or in each other.
-    fn whole(&mut self, a: &dyn Support, b: &dyn Support) -> Span {
-        let (shape, limits, mut simplex) = (Difference { a, b }, self.limits(0.0), Simplex::default());
+    fn whole(&mut self, a: &dyn Support, b: &dyn Support) -> GeomDistance {
+        let (shape, limits, mut simplex) = (MinkowskiDifference { a, b }, self.limits(0.0), Simplex::default());
         let closest = gjk(&shape, self.a.pos, self.b.pos, &limits, &mut simplex);
         if closest.distance > limits.tolerance || simplex.len < 2 {
-            return Span {
+            return GeomDistance {
                 dist: closest.distance,
                 from: closest.a,
                 to: closest.b,
@@ -156,12 +157,12 @@ impl Search<'_, '_> {
         let overlap = epa(&shape, &simplex, limits.tolerance, limits.iterations, self.polytope);
         // without a depth MuJoCo takes the geoms for touching, at no point
         overlap.map_or(
-            Span {
+            GeomDistance {
                 dist: 0.0,
                 from: [0.0; 3],
                 to: [0.0; 3],
             },
-            |overlap| Span {
+            |overlap| GeomDistance {
                 dist: -overlap.depth,
                 from: overlap.a,
                 to: overlap.b,

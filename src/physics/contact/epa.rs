@@ -4,7 +4,7 @@
 use super::gjk::Simplex;
 use super::nearest::{Projection, agree, combine3};
 use super::polytope::{Edge, MAX_FACES, Polytope, after};
-use super::support::{Difference, Support};
+use super::support::{MinkowskiDifference, Support};
 use super::{BIG, dot, sub};
 use crate::math::{MINVAL, Vec3, cross, mat_vec, norm, scale};
 
@@ -27,13 +27,13 @@ pub(super) struct Overlap {
 /// Expands the simplex (two to four vertices) until its nearest face is on the surface of the Minkowski difference.
 /// `None` if the start is degenerate or the polytope breaks down.
 pub(super) fn epa<A: Support, B: Support>(
-    shape: &Difference<A, B>,
+    shape: &MinkowskiDifference<A, B>,
     simplex: &Simplex,
     tolerance: f64,
     iterations: usize,
     polytope: &mut Polytope,
 ) -> Option<Overlap> {
-    let mut expansion = Expansion { shape, polytope };
+    let mut expansion = PolytopeExpansion { shape, polytope };
     expansion.polytope.clear();
     match simplex.len {
         2 => expansion.start_from_segment(simplex),
@@ -45,15 +45,15 @@ pub(super) fn epa<A: Support, B: Support>(
 }
 
 /// A polytope, and the shape inside which it grows.
-struct Expansion<'a, A, B> {
-    shape: &'a Difference<A, B>,
+struct PolytopeExpansion<'a, A, B> {
+    shape: &'a MinkowskiDifference<A, B>,
     polytope: &'a mut Polytope,
 }
 
 /// Vertices and neighbours of a start face.
 type StartFace = ([u16; 3], [u16; 3]);
 
-impl<A: Support, B: Support> Expansion<'_, A, B> {
+impl<A: Support, B: Support> PolytopeExpansion<'_, A, B> {
     /// Appends the support along a direction that is divided by `length`.
     #[inline(always)]
     fn add_support(&mut self, dir: Vec3, length: f64) -> u16 {
@@ -263,7 +263,7 @@ impl<A: Support, B: Support> Expansion<'_, A, B> {
                 break;
             }
 
-            // replace what the new vertex sees by a fan around it
+            // replace the faces that the new vertex sees by a fan around it
             self.polytope.carve(face, w);
             let edges = self.polytope.horizon.len();
             // a hole in a closed surface has three edges at least; rounding has torn this one

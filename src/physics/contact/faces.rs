@@ -16,14 +16,14 @@ const MAX_CORNERS: usize = 150;
 /// The most contacts: of more corners those are kept whose quadrilateral is the greatest.
 const MAX_CONTACTS: usize = 4;
 
-/// Work space.
+/// Buffers for finding the faces and edges of a multi-contact (multiccd) search.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Faces {
-    /// Of either shape, what may be its face or edge: a unit vector, and what it belongs to.
+pub(super) struct MulticcdScratch {
+    /// Candidates for the contact face or edge of either shape.
     candidates: [Vec<Candidate>; 2],
     /// Corners of the face that clips.
     clip: Vec<Vec3>,
-    /// Corners of what is clipped, and what is left of it.
+    /// Corners of the polygon that is clipped, before and after a plane.
     polygon: Vec<Vec3>,
     clipped: Vec<Vec3>,
 }
@@ -32,27 +32,27 @@ pub(super) struct Faces {
 #[derive(Clone, Copy, Debug)]
 struct Candidate {
     along: Vec3,
-    of: Origin,
+    of: CandidateSource,
 }
 
 #[derive(Clone, Copy, Debug)]
-enum Origin {
+enum CandidateSource {
     /// The face of this number.
     Face(usize),
     /// An edge to this point.
     Edge(Vec3),
 }
 
-/// The vertices of one shape at the corners of EPA's nearest face, of which one, two or three are different.
+/// The vertices of one shape at the corners of EPA's nearest face. One, two or three of them are different.
 #[derive(Clone, Copy)]
-struct Feature {
+struct ClosestFeature {
     points: [Vec3; 3],
     vertices: [usize; 3],
     dimension: usize,
 }
 
-impl Feature {
-    fn new(shape: &Shape, points: [Vec3; 3]) -> Self {
+impl ClosestFeature {
+    fn new(shape: &Polyhedron, points: [Vec3; 3]) -> Self {
         let (mut points, mut vertices) = (points, points.map(|point| shape.vertex(point)));
         let [a, b, c] = vertices;
         let dimension = match () {
@@ -79,13 +79,13 @@ pub(super) fn clip<'s>(
     b: &PlacedGeom,
     overlap: &Overlap,
     polytope: &Polytope,
-    space: &'s mut Faces,
+    space: &'s mut MulticcdScratch,
 ) -> Option<(&'s [Vec3], Vec3)> {
-    let (a, b) = (Shape::new(a)?, Shape::new(b)?);
+    let (a, b) = (Polyhedron::new(a)?, Polyhedron::new(b)?);
     let corners = polytope.faces.get(usize::from(overlap.face))?.vertices;
     let corners = corners.map(|k| &polytope.vertices[usize::from(k)]);
-    let first = Feature::new(&a, corners.map(|vertex| vertex.a));
-    let second = Feature::new(&b, corners.map(|vertex| vertex.b));
+    let first = ClosestFeature::new(&a, corners.map(|vertex| vertex.a));
+    let second = ClosestFeature::new(&b, corners.map(|vertex| vertex.b));
     let depth = norm(sub(overlap.b, overlap.a));
 
     let [ours, theirs] = &mut space.candidates;
@@ -134,7 +134,7 @@ fn pairs(first: usize, second: usize) -> impl Iterator<Item = (usize, usize)> {
     (0..first).flat_map(move |i| (0..second).map(move |j| (i, j)))
 }
 
-impl Faces {
+impl MulticcdScratch {
     /// Cuts the polygon by the planes through the edges of the clipping face, across it, and keeps at most [`MAX_CONTACTS`] corners
     /// (Sutherland and Hodgman, "Reentrant polygon clipping", Communications of the ACM 17, 1974).
     fn cut(&mut self, across: Vec3) -> Option<&[Vec3]> {
@@ -234,12 +234,12 @@ fn step(
 }
 
 /// A box or a mesh.
-struct Shape<'a> {
+struct Polyhedron<'a> {
     geom: &'a PlacedGeom<'a>,
     mesh: Option<(&'a Mesh, &'a MeshPolygons)>,
 }
 
-impl<'a> Shape<'a> {
+impl<'a> Polyhedron<'a> {
     /// Takes a box, or a mesh with polygons.
     fn new(geom: &'a PlacedGeom<'a>) -> Option<Self> {
         let mesh = match geom.kind {
@@ -281,7 +281,7 @@ impl<'a> Shape<'a> {
     }
 
     /// Lists the faces on which the vertices of a feature are.
-    fn normals(&self, feature: &Feature, out: &mut Vec<Candidate>) {
+    fn normals(&self, feature: &ClosestFeature, out: &mut Vec<Candidate>) {
         out.clear();
         match self.mesh {
             None => self.box_normals(feature, out),
@@ -305,12 +305,12 @@ impl<'a> Shape<'a> {
     fn polygon(&self, polygons: &MeshPolygons, polygon: u32) -> Candidate {
         Candidate {
             along: mat_vec(self.geom.mat, polygons.normal[polygon as usize]),
-            of: Origin::Face(polygon as usize),
+            of: CandidateSource::Face(polygon as usize),
         }
     }
 
     /// Lists the sides of a box on which all vertices of a feature are, in the order of the axes.
-    fn box_normals(&self, feature: &Feature, out: &mut Vec<Candidate>) {
+    fn box_normals(&self, feature: &ClosestFeature, out: &mut Vec<Candidate>) {
         let vertices = &feature.vertices[..feature.dimension];
         for axis in 0..3 {
             let upper = |vertex: &usize| vertex >> axis & 1 == 1;
@@ -324,20 +324,20 @@ impl<'a> Shape<'a> {
             local[axis] = sign;
             out.push(Candidate {
                 along: mat_vec(self.geom.mat, local),
-                of: Origin::Face(2 * axis + usize::from(sign < 0.0)),
+                of: CandidateSource::Face(2 * axis + usize::from(sign < 0.0)),
             });
         }
     }
 
     /// Lists the edges on which a feature of one or two vertices may be.
-    fn edges(&self, feature: &Feature, out: &mut Vec<Candidate>) {
+    fn edges(&self, feature: &ClosestFeature, out: &mut Vec<Candidate>) {
         out.clear();
         let [from, to, _] = feature.points;
         let mut push = |end: Vec3| {
             let along = unit(sub(end, from)).0;
             out.push(Candidate {
                 along,
-                of: Origin::Edge(end),
+                of: CandidateSource::Edge(end),
             });
         };
         if feature.dimension == 2 {
@@ -370,16 +370,16 @@ impl<'a> Shape<'a> {
     }
 
     /// Gives the corners of a face, clockwise from outside, or the ends of an edge that begins at `from`.
-    fn corners(&self, of: Origin, from: Vec3, out: &mut Vec<Vec3>) {
+    fn corners(&self, of: CandidateSource, from: Vec3, out: &mut Vec<Vec3>) {
         out.clear();
         match (of, self.mesh) {
-            (Origin::Edge(to), _) => out.extend([from, to]),
-            (Origin::Face(face), Some((mesh, polygons))) => {
+            (CandidateSource::Edge(to), _) => out.extend([from, to]),
+            (CandidateSource::Face(face), Some((mesh, polygons))) => {
                 let corners = polygons.corners(face);
                 let corners = &corners[..corners.len().min(MAX_CORNERS)];
                 out.extend(corners.iter().rev().map(|&vertex| self.vertex_at(mesh, vertex)));
             }
-            (Origin::Face(side), None) => {
+            (CandidateSource::Face(side), None) => {
                 let corners = BOX_CORNERS[side];
                 out.extend(corners.map(|signs| self.place(std::array::from_fn(|k| signs[k] * self.geom.size[k]))));
             }

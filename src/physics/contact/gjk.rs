@@ -3,11 +3,11 @@
 //! and Automation 4, 1988; Ericson, "Real-Time Collision Detection", 2005, section 9.5).
 
 use super::nearest::{segment_weights, tetrahedron_weights, triangle_weights};
-use super::support::{Difference, Support, Vertex};
+use super::support::{MinkowskiDifference, Support, Vertex};
 use super::{BIG, add_scaled, dot, sub};
 use crate::math::{MINVAL, Vec3, cross, norm, scale};
 
-/// A simplex of up to four vertices of the Minkowski difference, of which only the first `len` count.
+/// A simplex of up to four vertices of the Minkowski difference. Only the first `len` count.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Simplex {
     pub(super) vertices: [Vertex; 4],
@@ -16,7 +16,7 @@ pub(super) struct Simplex {
 
 /// The result of GJK.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Closest {
+pub(super) struct GjkResult {
     /// Distance, m: 0 when the shapes overlap, [`BIG`] when they are known to be apart or beyond the cutoff.
     pub(super) distance: f64,
     /// Nearest point of the first shape.
@@ -27,7 +27,7 @@ pub(super) struct Closest {
 
 /// The limits of a GJK search.
 #[derive(Clone, Copy)]
-pub(super) struct Limits {
+pub(super) struct GjkLimits {
     /// Least improvement of the distance that is worth another iteration, m.
     pub(super) tolerance: f64,
     /// Greatest number of iterations.
@@ -40,41 +40,41 @@ pub(super) struct Limits {
 
 /// Runs GJK from the line of centres. The simplex it ends with is left in `simplex`.
 pub(super) fn gjk<A: Support, B: Support>(
-    shape: &Difference<A, B>,
+    shape: &MinkowskiDifference<A, B>,
     centre_a: Vec3,
     centre_b: Vec3,
-    limits: &Limits,
+    limits: &GjkLimits,
     simplex: &mut Simplex,
-) -> Closest {
-    let mut search = Search {
+) -> GjkResult {
+    let mut search = GjkSearch {
         // any point of the difference would do; this one is there without a support, and near the origin where the
         // shapes are near each other
         nearest: sub(centre_a, centre_b),
         weights: [1.0, 0.0, 0.0, 0.0],
         count: 0,
     };
-    let apart = Closest {
+    let apart = GjkResult {
         distance: BIG,
         a: centre_a,
         b: centre_b,
     };
     match search.run(shape, limits, simplex) {
-        Enclosure::Outside => {
+        OriginEnclosure::Outside => {
             simplex.len = 0;
             apart
         }
-        Enclosure::Inside => {
+        OriginEnclosure::Inside => {
             simplex.len = 4;
-            Closest { distance: 0.0, ..apart }
+            GjkResult { distance: 0.0, ..apart }
         }
-        Enclosure::Unknown => {
-            let Search {
+        OriginEnclosure::Unknown => {
+            let GjkSearch {
                 nearest,
                 weights,
                 count,
             } = search;
             simplex.len = count;
-            Closest {
+            GjkResult {
                 distance: norm(nearest),
                 a: combine(&weights, &simplex.vertices, count, |v| v.a).unwrap_or(centre_a),
                 b: combine(&weights, &simplex.vertices, count, |v| v.b).unwrap_or(centre_b),
@@ -84,7 +84,7 @@ pub(super) fn gjk<A: Support, B: Support>(
 }
 
 /// A GJK search in progress.
-struct Search {
+struct GjkSearch {
     /// Point of the difference nearest to the origin so far.
     nearest: Vec3,
     /// Weights of the vertices of which that point consists.
@@ -93,16 +93,16 @@ struct Search {
     count: usize,
 }
 
-impl Search {
+impl GjkSearch {
     /// Searches until the nearest point is found or a tetrahedron or plane tells enough; the latter two leave the nearest
     /// point unknown.
     #[inline(always)]
     fn run<A: Support, B: Support>(
         &mut self,
-        shape: &Difference<A, B>,
-        limits: &Limits,
+        shape: &MinkowskiDifference<A, B>,
+        limits: &GjkLimits,
         simplex: &mut Simplex,
-    ) -> Enclosure {
+    ) -> OriginEnclosure {
         let mut may_test_tetrahedron = !limits.wants_distance();
         let tolerance2 = limits.square_tolerance(shape);
         let mut iteration = 0;
@@ -123,7 +123,7 @@ impl Search {
                 break;
             }
             if limits.separates(self.nearest, newest) {
-                return Enclosure::Outside;
+                return OriginEnclosure::Outside;
             }
 
             // whether the origin is inside can be told from a tetrahedron alone, without nearest points; but not how
@@ -131,7 +131,7 @@ impl Search {
             if self.count == 3 && may_test_tetrahedron {
                 match enclose_origin(shape, simplex, &mut iteration, limits.iterations) {
                     // undecided: the weights go on from the tetrahedron as it was
-                    Enclosure::Unknown => may_test_tetrahedron = false,
+                    OriginEnclosure::Unknown => may_test_tetrahedron = false,
                     known => return known,
                 }
             }
@@ -150,7 +150,7 @@ impl Search {
             }
             iteration += 1;
         }
-        Enclosure::Unknown
+        OriginEnclosure::Unknown
     }
 }
 
@@ -168,7 +168,7 @@ fn towards_origin(point: Vec3) -> (bool, Vec3) {
     (at_origin, dir)
 }
 
-impl Limits {
+impl GjkLimits {
     /// Returns whether the distance is asked for, and not only whether the shapes overlap.
     #[inline(always)]
     fn wants_distance(&self) -> bool {
@@ -177,7 +177,7 @@ impl Limits {
 
     /// Returns the square of the tolerance; 0 where the search, among finitely many points, ends by itself.
     #[inline(always)]
-    fn square_tolerance<A: Support, B: Support>(&self, shape: &Difference<A, B>) -> f64 {
+    fn square_tolerance<A: Support, B: Support>(&self, shape: &MinkowskiDifference<A, B>) -> f64 {
         if shape.a.discrete() && shape.b.discrete() {
             0.0
         } else {
@@ -252,7 +252,7 @@ fn combine(weights: &[f64; 4], vertices: &[Vertex; 4], count: usize, point: impl
 }
 
 /// The position of the origin relative to the Minkowski difference.
-enum Enclosure {
+enum OriginEnclosure {
     Inside,
     Outside,
     Unknown,
@@ -261,11 +261,11 @@ enum Enclosure {
 /// Moves a tetrahedron, vertex by vertex, until it holds the origin or a vertex shows that none can. The simplex is
 /// changed only in the first case. Counts in `iteration`.
 fn enclose_origin<A: Support, B: Support>(
-    shape: &Difference<A, B>,
+    shape: &MinkowskiDifference<A, B>,
     simplex: &mut Simplex,
     iteration: &mut usize,
     iterations: usize,
-) -> Enclosure {
+) -> OriginEnclosure {
     /// Corners of the face opposite each vertex, such that its normal points outwards.
     const FACES: [[usize; 3]; 4] = [[2, 1, 3], [0, 2, 3], [1, 0, 3], [0, 1, 2]];
     let mut vertices = simplex.vertices;
@@ -288,7 +288,7 @@ fn enclose_origin<A: Support, B: Support>(
         }
         // the origin is in the plane of a face, and neither side of it
         if distances.contains(&0.0) {
-            return Enclosure::Unknown;
+            return OriginEnclosure::Unknown;
         }
 
         // the face the origin is farthest outside of
@@ -297,18 +297,18 @@ fn enclose_origin<A: Support, B: Support>(
         let worst = if distances[i] < distances[j] { i } else { j };
         if distances[worst] > 0.0 {
             simplex.vertices = vertices;
-            return Enclosure::Inside;
+            return OriginEnclosure::Inside;
         }
         // the shape has to reach beyond this face to hold the origin: the support says whether it does, and takes the
         // place of the vertex behind the face
         vertices[worst] = shape.support(normals[worst]);
         if dot(normals[worst], vertices[worst].point) < 0.0 {
-            return Enclosure::Outside;
+            return OriginEnclosure::Outside;
         }
         // the new vertex is on the other side of the face, which turns the tetrahedron inside out; an exchange turns it
         // back
         vertices.swap((worst + 1) & 3, (worst + 2) & 3);
         *iteration += 1;
     }
-    Enclosure::Unknown
+    OriginEnclosure::Unknown
 }

@@ -4,11 +4,11 @@ use super::ccd_support::CcdSupport;
 use super::epa::epa;
 use super::fix_normal::fixed;
 use super::frame;
-use super::gjk::{Limits, Simplex, gjk};
+use super::gjk::{GjkLimits, Simplex, gjk};
 use super::mesh::MeshShape;
 use super::mpr;
 use super::polytope::Polytope;
-use super::support::{Ball, Capsule, Cuboid, Cylinder, Difference, Ellipsoid, Point, Segment, Support};
+use super::support::{Ball, Capsule, Cuboid, Cylinder, Ellipsoid, MinkowskiDifference, Point, Segment, Support};
 use super::{BIG, BareContact, ContactOptions, ContactPoint, PlacedGeom, add_scaled, dot, sub};
 use crate::math::{Mat3, Vec3, add, mat_mul, mat_t_vec, mat_vec, scale, transpose, unit};
 use crate::model::{GeomType, HField};
@@ -56,7 +56,7 @@ impl Prism {
 }
 
 /// The other geom, in the frame of the height field.
-struct Other<'a> {
+struct LocalGeom<'a> {
     pos: Vec3,
     /// The point or segment inside a sphere or capsule, and the distance of the surface from it.
     core: Option<(&'a dyn Support, f64)>,
@@ -99,7 +99,7 @@ pub(super) fn hfield(
         });
     } else {
         let other = CcdSupport::new(&local, margin, bare.corner());
-        let limits = mpr::Limits {
+        let limits = mpr::MprLimits {
             tolerance: options.ccd_tolerance,
             iterations: options.ccd_iterations,
         };
@@ -109,37 +109,37 @@ pub(super) fn hfield(
 }
 
 /// Calls `run` with a geom grown by half the margin.
-fn with_shape(geom: &PlacedGeom, margin: f64, run: impl FnOnce(&Other)) {
+fn with_shape(geom: &PlacedGeom, margin: f64, run: impl FnOnce(&LocalGeom)) {
     let (pos, radius) = (geom.pos, geom.size[0] + 0.5 * margin);
     match geom.kind {
-        GeomType::Sphere => run(&Other {
+        GeomType::Sphere => run(&LocalGeom {
             pos,
             core: Some((&Point::new(geom), radius)),
             whole: &Ball::new(geom, margin),
         }),
-        GeomType::Capsule => run(&Other {
+        GeomType::Capsule => run(&LocalGeom {
             pos,
             core: Some((&Segment::new(geom), radius)),
             whole: &Capsule::new(geom, margin),
         }),
-        GeomType::Ellipsoid => run(&Other {
+        GeomType::Ellipsoid => run(&LocalGeom {
             pos,
             core: None,
             whole: &Ellipsoid::new(geom, margin),
         }),
-        GeomType::Cylinder => run(&Other {
+        GeomType::Cylinder => run(&LocalGeom {
             pos,
             core: None,
             whole: &Cylinder::new(geom, margin),
         }),
-        GeomType::Box => run(&Other {
+        GeomType::Box => run(&LocalGeom {
             pos,
             core: None,
             whole: &Cuboid::new(geom, margin),
         }),
         GeomType::Mesh => {
             if let Some(mesh) = geom.mesh {
-                run(&Other {
+                run(&LocalGeom {
                     pos,
                     core: None,
                     whole: &MeshShape::new(geom, mesh, margin),
@@ -150,15 +150,15 @@ fn with_shape(geom: &PlacedGeom, margin: f64, run: impl FnOnce(&Other)) {
     }
 }
 
-/// The squares of the grid that a geom may touch, and its lowest point.
-struct Cells {
+/// The grid cells that a geom may touch, and the geom's lowest point.
+struct GridCells {
     rows: std::ops::Range<usize>,
     columns: std::ops::RangeInclusive<usize>,
     lowest: f64,
 }
 
 /// Finds the squares under a geom; `None` if it is not over, in or under the height field.
-fn cells(field: &HField, whole: &dyn Support, margin: f64) -> Option<Cells> {
+fn cells(field: &HField, whole: &dyn Support, margin: f64) -> Option<GridCells> {
     let [x, y, top, base] = field.size;
     let reach = |k: usize, sign: f64| {
         let mut dir = [0.0; 3];
@@ -179,7 +179,7 @@ fn cells(field: &HField, whole: &dyn Support, margin: f64) -> Option<Cells> {
         first..place(high, half, count).ceil().clamp(0.0, last) as usize
     };
     let columns = range(low[0], high[0], x, field.ncol);
-    Some(Cells {
+    Some(GridCells {
         rows: range(low[1], high[1], y, field.nrow),
         columns: columns.start..=columns.end,
         lowest: low[2],
@@ -189,7 +189,7 @@ fn cells(field: &HField, whole: &dyn Support, margin: f64) -> Option<Cells> {
 /// Calls `found` with each contact; `touch` finds that with a prism.
 fn touch_cells(
     field: &HField,
-    cells: &Cells,
+    cells: &GridCells,
     margin: f64,
     mut touch: impl FnMut(&Prism) -> Option<BareContact>,
     mut found: impl FnMut(BareContact),
@@ -223,7 +223,7 @@ fn touch_cells(
 }
 
 /// Finds the contact of a prism and a geom that overlap, by MPR.
-fn penetration(prism: &Prism, other: (&dyn Support, Vec3), limits: &mpr::Limits) -> Option<BareContact> {
+fn penetration(prism: &Prism, other: (&dyn Support, Vec3), limits: &mpr::MprLimits) -> Option<BareContact> {
     let found = mpr::mpr((prism, prism.centre()), other, limits)?;
     Some(BareContact {
         dist: -found.depth,
@@ -233,7 +233,7 @@ fn penetration(prism: &Prism, other: (&dyn Support, Vec3), limits: &mpr::Limits)
 }
 
 /// Finds the contact of a prism and a geom that overlap, by GJK and EPA.
-fn overlap(prism: &Prism, other: &Other, options: &ContactOptions, polytope: &mut Polytope) -> Option<BareContact> {
+fn overlap(prism: &Prism, other: &LocalGeom, options: &ContactOptions, polytope: &mut Polytope) -> Option<BareContact> {
     let (dist, first, second) = deepest(prism, other, options, polytope)?;
     Some(BareContact {
         dist,
@@ -245,11 +245,11 @@ fn overlap(prism: &Prism, other: &Other, options: &ContactOptions, polytope: &mu
 /// Returns the distance of a prism and a geom that overlap, and the deepest point of either.
 fn deepest(
     prism: &Prism,
-    other: &Other,
+    other: &LocalGeom,
     options: &ContactOptions,
     polytope: &mut Polytope,
 ) -> Option<(f64, Vec3, Vec3)> {
-    let limits = |cutoff: f64| Limits {
+    let limits = |cutoff: f64| GjkLimits {
         tolerance: options.ccd_tolerance,
         iterations: options.ccd_iterations,
         cutoff,
@@ -257,7 +257,7 @@ fn deepest(
     };
     let (first, centre): (&dyn Support, Vec3) = (prism, prism.centre());
     if let Some((core, radius)) = other.core {
-        let shape = Difference { a: first, b: core };
+        let shape = MinkowskiDifference { a: first, b: core };
         let closest = gjk(&shape, centre, other.pos, &limits(radius), &mut Simplex::default());
         if closest.distance > options.ccd_tolerance {
             let dist = closest.distance - radius;
@@ -268,7 +268,7 @@ fn deepest(
             return Some((dist, closest.a, add_scaled(closest.b, towards, -radius)));
         }
     }
-    let shape = Difference {
+    let shape = MinkowskiDifference {
         a: first,
         b: other.whole,
     };

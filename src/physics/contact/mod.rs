@@ -41,6 +41,7 @@
 mod box_box;
 mod box_edge;
 mod box_face;
+mod box_frame;
 mod capsule_box;
 mod ccd_support;
 mod convex;
@@ -61,6 +62,7 @@ mod round;
 mod support;
 #[cfg(test)]
 mod tests;
+mod tolerance;
 mod triangle;
 
 pub use distance::distance;
@@ -201,12 +203,12 @@ impl Quirks {
     }
 }
 
-/// Work space of [`collide`], allocated once and used for any number of calls.
+/// Buffers of [`collide`], allocated once and used for any number of calls.
 #[derive(Clone, Debug)]
 pub struct Scratch {
     polytope: polytope::Polytope,
-    box_points: Vec<box_box::BoxPoint>,
-    faces: faces::Faces,
+    box_points: Vec<box_frame::BoxPoint>,
+    faces: faces::MulticcdScratch,
 }
 
 impl Scratch {
@@ -215,7 +217,7 @@ impl Scratch {
         Scratch {
             polytope: polytope::Polytope::new(),
             box_points: Vec::with_capacity(box_box::MAX_POINTS),
-            faces: faces::Faces::default(),
+            faces: faces::MulticcdScratch::default(),
         }
     }
 }
@@ -230,6 +232,7 @@ impl Default for Scratch {
 ///
 /// MuJoCo makes this test before [`collide`], and it does decide whether some contacts exist. `radius_a` and `radius_b`
 /// are the bounding radii about the centres, 0 for a plane. Needs `a.kind <= b.kind`.
+#[doc(alias = "mj_filterSphere")]
 #[inline(always)]
 pub fn bounding_test(a: &PlacedGeom, radius_a: f64, b: &PlacedGeom, radius_b: f64, margin: f64) -> bool {
     if a.kind == GeomType::Plane {
@@ -260,6 +263,7 @@ pub fn needs_convex(a: GeomType, b: GeomType) -> bool {
 ///
 /// Needs `a.kind <= b.kind`; appends nothing otherwise, nor for pairs that do not collide. Contacts are those with
 /// `dist <= margin` (m). Any input is safe; poses that are not finite give an unspecified but finite number of contacts.
+#[doc(alias = "mjCOLLISIONFUNC")]
 pub fn collide(
     a: &PlacedGeom,
     b: &PlacedGeom,

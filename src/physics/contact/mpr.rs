@@ -5,13 +5,11 @@
 //! through. It is moved outwards, until the origin is behind it, or in front of a plane that touches the difference; and then on, until it is
 //! on the surface: its nearest point to the origin is taken for the depth, though other parts of the surface may be nearer.
 
-use super::support::{Difference, Support, Vertex};
+use super::support::{MinkowskiDifference, Support, Vertex};
+use super::tolerance::{EPS, equal, is_zero};
 use super::triangle::nearest;
 use super::{dot, sub};
 use crate::math::{Vec3, add, cross, scale};
-
-/// What libccd takes for zero (`CCD_EPS`).
-const EPS: f64 = f64::EPSILON;
 
 /// Steps after which a search is given up that rounding errors lead in a circle, in which libccd would not end.
 const ENDLESS: usize = 10_000;
@@ -27,9 +25,9 @@ pub(super) struct Penetration {
     pub(super) pos: Vec3,
 }
 
-/// When the search for the surface ends.
+/// Limits that end the search for the surface.
 #[derive(Clone, Copy)]
-pub(super) struct Limits {
+pub(super) struct MprLimits {
     /// How near the portal has to be to the surface, m.
     pub(super) tolerance: f64,
     /// Number of times that the portal is moved once the origin is behind it.
@@ -37,7 +35,11 @@ pub(super) struct Limits {
 }
 
 /// Finds the overlap of two shapes with a point inside of either; `None` where they are apart, or touch without a direction.
-pub(super) fn mpr(first: (&dyn Support, Vec3), second: (&dyn Support, Vec3), limits: &Limits) -> Option<Penetration> {
+pub(super) fn mpr(
+    first: (&dyn Support, Vec3),
+    second: (&dyn Support, Vec3),
+    limits: &MprLimits,
+) -> Option<Penetration> {
     let ((a, centre_a), (b, centre_b)) = (first, second);
     let mut inside = sub(centre_a, centre_b);
     if inside.iter().all(|&x| is_zero(x)) {
@@ -49,32 +51,19 @@ pub(super) fn mpr(first: (&dyn Support, Vec3), second: (&dyn Support, Vec3), lim
         b: centre_b,
     };
     let mut portal = Portal {
-        shape: Difference { a, b },
+        shape: MinkowskiDifference { a, b },
         corners: [inside; 4],
     };
     match portal.discover() {
-        Start::Outside => None,
-        Start::OnRay => portal.on_ray(),
-        Start::Through => {
+        PortalStart::Outside => None,
+        PortalStart::OnRay => portal.on_ray(),
+        PortalStart::Through => {
             if !portal.passes_origin(limits.tolerance) {
                 return None;
             }
             portal.surface(limits)
         }
     }
-}
-
-/// Tells whether a number is zero but for rounding errors.
-#[inline(always)]
-pub(super) fn is_zero(x: f64) -> bool {
-    x.abs() < EPS
-}
-
-/// Tells whether two numbers are equal but for rounding errors.
-pub(super) fn equal(a: f64, b: f64) -> bool {
-    let apart = (a - b).abs();
-    let greater = if b.abs() > a.abs() { b.abs() } else { a.abs() };
-    apart < EPS || apart < EPS * greater
 }
 
 /// Tells whether a height is not below zero, but for rounding errors.
@@ -89,8 +78,7 @@ fn below(height: f64) -> bool {
     !is_zero(height) && height < 0.0
 }
 
-/// Scales a vector to length one. Of length zero it has no direction: then what becomes of it is not a number, as in libccd, and no
-/// comparison with it holds.
+/// Scales a vector to length one. A vector of length zero becomes NaN, as in libccd, and no comparison with it holds.
 #[inline(always)]
 fn direction(v: Vec3) -> Vec3 {
     scale(v, 1.0 / dot(v, v).sqrt())
@@ -102,8 +90,8 @@ fn volume(a: Vec3, b: Vec3, c: Vec3) -> f64 {
     dot(cross(a, b), c)
 }
 
-/// How a search begins.
-enum Start {
+/// The start of a search.
+enum PortalStart {
     /// The shapes are apart.
     Outside,
     /// The first support point is on the ray: there is no need for a portal.
@@ -114,7 +102,7 @@ enum Start {
 
 /// The point inside the difference, and the three corners of the portal.
 struct Portal<'s> {
-    shape: Difference<&'s dyn Support, &'s dyn Support>,
+    shape: MinkowskiDifference<&'s dyn Support, &'s dyn Support>,
     corners: [Vertex; 4],
 }
 
@@ -130,7 +118,7 @@ impl Portal<'_> {
         direction(cross(sub(b, a), sub(c, a)))
     }
 
-    /// Puts the support in a direction in the place of a corner; returns whether it is beyond the origin.
+    /// Replaces a corner by the support point in a direction; returns whether that is beyond the origin.
     fn reach(&mut self, corner: usize, dir: Vec3) -> bool {
         self.corners[corner] = self.shape.support(dir);
         let height = dot(self.corners[corner].point, dir);
@@ -144,17 +132,17 @@ impl Portal<'_> {
     }
 
     /// Looks for a portal that the ray goes through.
-    fn discover(&mut self) -> Start {
+    fn discover(&mut self) -> PortalStart {
         let inside = self.corners[0].point;
         if !self.reach(1, direction(scale(inside, -1.0))) {
-            return Start::Outside;
+            return PortalStart::Outside;
         }
         let across = cross(inside, self.corners[1].point);
         if is_zero(dot(across, across)) {
-            return Start::OnRay;
+            return PortalStart::OnRay;
         }
         if !self.reach(2, direction(across)) {
-            return Start::Outside;
+            return PortalStart::Outside;
         }
         let mut dir = self.side();
         if dot(dir, inside) > 0.0 {
@@ -163,19 +151,19 @@ impl Portal<'_> {
         }
         for _ in 0..ENDLESS {
             if !self.reach(3, dir) {
-                return Start::Outside;
+                return PortalStart::Outside;
             }
             // the ray passes a side of the pyramid: the new corner takes the place of the one that is farthest from it
             let [_, a, b, c] = self.points();
             let farthest = match () {
                 () if below(volume(a, c, inside)) => 2,
                 () if below(volume(c, b, inside)) => 1,
-                () => return Start::Through,
+                () => return PortalStart::Through,
             };
             self.corners[farthest] = self.corners[3];
             dir = self.side();
         }
-        Start::Outside
+        PortalStart::Outside
     }
 
     /// Moves the portal outwards until the origin is behind it; returns whether it ever is.
@@ -195,7 +183,7 @@ impl Portal<'_> {
     }
 
     /// Moves the portal, which has the origin behind it, to the surface, and measures there.
-    fn surface(&mut self, limits: &Limits) -> Option<Penetration> {
+    fn surface(&mut self, limits: &MprLimits) -> Option<Penetration> {
         let mut iteration = 0;
         loop {
             let dir = self.outwards();
@@ -243,7 +231,7 @@ impl Portal<'_> {
         gain < tolerance || equal(gain, tolerance)
     }
 
-    /// Puts a vertex in the place of the corner that leaves the ray within the portal.
+    /// Replaces the corner whose replacement keeps the ray within the portal.
     fn expand(&mut self, vertex: Vertex) {
         let [inside, a, b, c] = self.points();
         let plane = cross(vertex.point, inside);
@@ -257,7 +245,7 @@ impl Portal<'_> {
         self.corners[corner] = vertex;
     }
 
-    /// Returns the point between the shapes: the origin is made up of all corners, and so are both points, of which the mean is taken.
+    /// Returns the point between the shapes: the mean of the points of both shapes that have the origin's barycentric coordinates.
     fn middle(&self) -> Vec3 {
         let [inside, a, b, c] = self.points();
         let mut weights = [
@@ -291,7 +279,7 @@ mod tests {
     use crate::math::{MAT3_ID, norm};
     use crate::model::GeomType;
 
-    const LIMITS: Limits = Limits {
+    const LIMITS: MprLimits = MprLimits {
         tolerance: 1e-6,
         iterations: 50,
     };

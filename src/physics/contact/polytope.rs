@@ -15,7 +15,7 @@ pub(super) struct Face {
     pub(super) vertices: [u16; 3],
     /// Face across each edge.
     pub(super) neighbours: [u16; 3],
-    state: Listing,
+    state: ListState,
     /// Foot of the perpendicular from the origin to the plane of the face.
     pub(super) foot: Vec3,
     /// Distance of the plane from the origin.
@@ -23,7 +23,7 @@ pub(super) struct Face {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Listing {
+enum ListState {
     /// The face is not in the open list, and serves as a neighbour only.
     Unlisted,
     /// The face is at this index of the open list.
@@ -45,7 +45,7 @@ fn before(edge: u8) -> u8 {
 
 /// An entry of the open list.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Open {
+pub(super) struct OpenEntry {
     pub(super) distance: f64,
     pub(super) face: u16,
 }
@@ -63,7 +63,7 @@ pub(super) struct Polytope {
     pub(super) vertices: Vec<Vertex>,
     pub(super) faces: Vec<Face>,
     /// Faces that may be nearest to the origin.
-    pub(super) open: Vec<Open>,
+    pub(super) open: Vec<OpenEntry>,
     /// Edges between the faces that the newest vertex sees and those it does not, in order.
     pub(super) horizon: Vec<Edge>,
     /// Edges still to be crossed in the search for the horizon.
@@ -123,7 +123,7 @@ impl Polytope {
         self.faces.push(Face {
             vertices,
             neighbours,
-            state: Listing::Unlisted,
+            state: ListState::Unlisted,
             foot,
             distance,
         });
@@ -138,27 +138,27 @@ impl Polytope {
         // a wanted face stays, another one is truncated at once
         let place = self.open.len();
         entry.state = if wanted {
-            Listing::Listed(place as u16)
+            ListState::Listed(place as u16)
         } else {
-            Listing::Unlisted
+            ListState::Unlisted
         };
         let distance = entry.distance;
-        self.open.push(Open { distance, face });
+        self.open.push(OpenEntry { distance, face });
         self.open.truncate(place + wanted as usize);
     }
 
     /// Deletes a face. The last entry of the open list takes its place there.
     #[inline]
     fn delete(&mut self, face: u16) {
-        if let Listing::Listed(place) = self.faces[face as usize].state {
+        if let ListState::Listed(place) = self.faces[face as usize].state {
             // constant time; the order that it leaves is MuJoCo's, and decides between faces of equal distance
             self.open.swap_remove(place as usize);
             if let Some(moved) = self.open.get(place as usize) {
-                self.faces[moved.face as usize].state = Listing::Listed(place);
+                self.faces[moved.face as usize].state = ListState::Listed(place);
             }
         }
         // the face keeps its place and its values: neighbours refer to it by number, and EPA may still end with it
-        self.faces[face as usize].state = Listing::Deleted;
+        self.faces[face as usize].state = ListState::Deleted;
     }
 
     /// Returns which edge of `face` starts at the vertex.
@@ -183,7 +183,7 @@ impl Polytope {
         self.cross_edge(Edge { face: seed, edge: 0 }, w);
         while let Some(next) = self.pending.pop() {
             let neighbour = self.faces[next.face as usize].neighbours[next.edge as usize];
-            if self.faces[neighbour as usize].state != Listing::Deleted {
+            if self.faces[neighbour as usize].state != ListState::Deleted {
                 self.cross_edge(next, w);
             }
         }

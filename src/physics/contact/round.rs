@@ -5,16 +5,16 @@ use super::plane::plane_ball;
 use super::{BareContact, ContactPoint, PlacedGeom, add_scaled, dot, push, sub};
 use crate::math::{MINVAL, Vec3, add, cross, mat_t_vec, mat_vec, scale, unit};
 
-/// A ball, with the axis of the geom it belongs to; the axes give a normal where two centres coincide.
+/// A sphere with the axis of its geom. The axes give a normal if two centres coincide.
 #[derive(Clone, Copy)]
-struct Ball {
+struct AxisSphere {
     centre: Vec3,
     radius: f64,
     axis: Vec3,
 }
 
 #[inline(always)]
-fn ball_ball(a: Ball, b: Ball, margin: f64) -> Option<BareContact> {
+fn ball_ball(a: AxisSphere, b: AxisSphere, margin: f64) -> Option<BareContact> {
     let between = sub(a.centre, b.centre);
     let distance2 = dot(between, between);
     let reach = margin + a.radius + b.radius;
@@ -32,8 +32,8 @@ fn ball_ball(a: Ball, b: Ball, margin: f64) -> Option<BareContact> {
 }
 
 #[inline(always)]
-fn ball_of(geom: &PlacedGeom) -> Ball {
-    Ball {
+fn ball_of(geom: &PlacedGeom) -> AxisSphere {
+    AxisSphere {
         centre: geom.pos,
         radius: geom.size[0],
         axis: geom.axis(),
@@ -51,7 +51,7 @@ pub(super) fn sphere_sphere(a: &PlacedGeom, b: &PlacedGeom, margin: f64) -> Opti
 pub(super) fn sphere_capsule(a: &PlacedGeom, b: &PlacedGeom, margin: f64) -> Option<BareContact> {
     let axis = b.axis();
     let along = dot(axis, sub(a.pos, b.pos)).max(-b.size[1]).min(b.size[1]);
-    let nearest = Ball {
+    let nearest = AxisSphere {
         centre: add(scale(axis, along), b.pos),
         radius: b.size[0],
         axis,
@@ -77,7 +77,7 @@ pub(super) fn sphere_cylinder(a: &PlacedGeom, b: &PlacedGeom, margin: f64) -> Op
         cap = half - height.abs() < radius - radial2.sqrt();
         side = !cap;
     }
-    let ball = |centre: Vec3, radius: f64| Ball { centre, radius, axis };
+    let ball = |centre: Vec3, radius: f64| AxisSphere { centre, radius, axis };
     if side {
         return ball_ball(ball_of(a), ball(add(along, b.pos), radius), margin);
     }
@@ -191,12 +191,12 @@ impl<'a> Segments<'a> {
     /// Creates the contact of the balls at two points of the segments.
     #[inline(always)]
     fn touch(&self, x1: f64, x2: f64, margin: f64) -> Option<BareContact> {
-        let first = Ball {
+        let first = AxisSphere {
             centre: add_scaled(self.a.pos, self.half1, x1),
             radius: self.a.size[0],
             axis: self.axis1,
         };
-        let second = Ball {
+        let second = AxisSphere {
             centre: add_scaled(self.b.pos, self.half2, x2),
             radius: self.b.size[0],
             axis: self.axis2,

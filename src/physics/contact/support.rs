@@ -3,7 +3,7 @@
 use super::{PlacedGeom, add_scaled, sub};
 use crate::math::{Mat3, Vec3, add, mat_t_vec, mat_vec, norm, scale};
 
-/// A convex shape, known by its farthest points.
+/// A convex shape, defined by its support function.
 pub(super) trait Support {
     /// Returns the farthest point in the unit direction `dir`.
     fn support(&self, dir: Vec3) -> Vec3;
@@ -280,14 +280,14 @@ pub(super) struct Vertex {
 }
 
 /// The Minkowski difference of two shapes, first minus second: it holds the origin when they overlap.
-pub(super) struct Difference<A, B> {
+pub(super) struct MinkowskiDifference<A, B> {
     /// First shape.
     pub(super) a: A,
     /// Second shape.
     pub(super) b: B,
 }
 
-impl<A: Support, B: Support> Difference<A, B> {
+impl<A: Support, B: Support> MinkowskiDifference<A, B> {
     /// Returns the farthest vertex in the unit direction `dir`.
     #[inline(always)]
     pub(super) fn support(&self, dir: Vec3) -> Vertex {

@@ -43,9 +43,9 @@ const ODD: [f64; 18] = [
 ];
 
 /// Random shapes and poses.
-struct Random(Rng);
+struct RandomShapes(Rng);
 
-impl Random {
+impl RandomShapes {
     fn new(seed: u64) -> Self {
         Self(Rng::with_seed(seed))
     }
@@ -159,7 +159,7 @@ fn normals_point_from_first_to_second_and_positions_lie_midway() {
 
 #[test]
 fn frames_are_rotations_and_a_used_scratch_changes_nothing() {
-    let mut random = Random::new(7);
+    let mut random = RandomShapes::new(7);
     let mut scratch = Scratch::new();
     let options = ContactOptions::default();
     for (first, second) in pairs() {
@@ -225,7 +225,7 @@ fn pairs_that_do_not_collide_or_come_in_the_wrong_order_give_nothing() {
 
 #[test]
 fn input_that_is_not_sane_is_survived() {
-    let mut random = Random::new(99);
+    let mut random = RandomShapes::new(99);
     let mut scratch = Scratch::new();
     let mut out = Vec::new();
     for first in KINDS {
@@ -356,7 +356,7 @@ fn every_quirk_can_be_switched_off() {
     for (name, kind, switch) in switches {
         let mut quirks = Quirks::default();
         switch(&mut quirks);
-        let mut random = Random::new(5);
+        let mut random = RandomShapes::new(5);
         let mut changed = 0;
         for round in 0..20_000 {
             // sizes and positions on a grid give exact coincidences

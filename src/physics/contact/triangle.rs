@@ -1,6 +1,6 @@
 //! The point of a triangle that is nearest to the origin, with the decisions of libccd's `ccdVec3PointTriDist2`, which MPR ends with.
 
-use super::mpr::{equal, is_zero};
+use super::tolerance::{equal, is_zero};
 use super::{dot, sub};
 use crate::math::{Vec3, add, scale};
 

@@ -20,6 +20,7 @@ pub fn rate(model: &Model, actuator: usize, act: f64, ctrl: f64) -> f64 {
 }
 
 /// Returns an activation after a time step in which its rate starts as given, within its limits.
+#[doc(alias = "mj_nextActivation")]
 pub fn next(model: &Model, actuator: usize, act: f64, rate: f64) -> f64 {
     let h = model.opt.timestep;
     let next = match model.actuator_dyntype[actuator] {

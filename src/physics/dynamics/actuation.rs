@@ -12,6 +12,7 @@ use crate::topology::Topology;
 /// An actuator gives `clamp(gain ctrl + bias)`, times its gear on the joint or the tendon; its length and velocity are gear times
 /// those of the joint or the tendon. What all actuators together do to a joint may be limited. Where it has an activation, that takes the place of the control. Where muscles of an actuation model take its place, `clamp(gain ctrl torque)` acts on the joint itself. Controls out
 /// of range are clamped. `bodies` must be up to date.
+#[doc(alias = "mj_fwdActuation")]
 #[inline(always)]
 pub fn fwd_actuation(model: &Model, topology: &Topology, bodies: &mut Articulated, s: &mut State) {
     let mut forces = std::mem::take(&mut s.qfrc_actuator);
@@ -37,7 +38,7 @@ pub fn fwd_actuation(model: &Model, topology: &Topology, bodies: &mut Articulate
             ctrl = activation::acting(model, i, s.act[k], s.act_dot[k]);
         }
         let motion = motion(model, topology, s, i, gear);
-        // what is off still has the least force of its range, as in MuJoCo
+        // a disabled actuator still has the least force of its range, as in MuJoCo
         let mut force = if model.actuator_disabled(i) {
             0.0
         } else {
@@ -79,7 +80,7 @@ fn motion(model: &Model, topology: &Topology, s: &State, i: usize, gear: f64) ->
     ]
 }
 
-/// Adds to the forces of actuators what compensates gravity in their place, and limits the sum on each joint.
+/// Adds gravity compensation that counts as actuator force, and limits the sum on each joint.
 #[inline(always)]
 fn limit_joint_forces(model: &Model, s: &mut State) {
     for d in 0..model.nv {

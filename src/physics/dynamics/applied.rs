@@ -13,8 +13,9 @@ pub(super) fn applied(s: &State) -> impl Iterator<Item = (usize, Vec3, Vec3)> {
         .map(|(body, w)| (body, [w[0], w[1], w[2]], [w[3], w[4], w[5]]))
 }
 
-/// Adds to `qfrc_smooth` what [`State::xfrc_applied`] does to the joints: the transposed Jacobian of each body's centre of
+/// Adds the generalised forces of [`State::xfrc_applied`] to `qfrc_smooth`: the transposed Jacobian of each body's centre of
 /// mass, in the order of operations of MuJoCo's `mj_xfrcAccumulate`.
+#[doc(alias = "mj_xfrcAccumulate")]
 pub fn xfrc_accumulate(model: &Model, s: &mut State) {
     let mut smooth = std::mem::take(&mut s.qfrc_smooth);
     for (body, force, torque) in applied(s) {
@@ -26,6 +27,7 @@ pub fn xfrc_accumulate(model: &Model, s: &mut State) {
 
 /// Adds to generalised forces `qfrc` (nv) what a force and a torque on a body do that act at a point, all in the world frame
 /// (MuJoCo's `mj_applyFT`).
+#[doc(alias = "mj_applyFT")]
 pub(super) fn add_force(
     model: &Model,
     cdof: &[Spatial],

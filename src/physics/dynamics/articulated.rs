@@ -4,15 +4,15 @@ mod four;
 
 use std::ops::Range;
 
-use crate::dynamics::Composite;
+use crate::dynamics::CompositeInertia;
 use crate::model::{Arrays, JointType};
 use crate::spatial::{Inertia, Spatial, axpy6, dot6};
 use crate::state::State;
 
 pub use four::Four;
 
-/// One value for the inertia, one for the inertia with implicit damping: side by side, one vector instruction does both.
-type Pair = [f64; 2];
+/// One value for the inertia and one for the inertia with implicit damping, side by side so that one vector instruction computes both.
+type DampingPair = [f64; 2];
 
 /// The matrix to solve with.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -30,11 +30,11 @@ pub struct Articulated {
     /// The links, ascending by body.
     links: Vec<Link>,
     /// Bodies without joints that carry none either, as rigid parts of links: the last ones first.
-    loads: Vec<Load>,
+    loads: Vec<FixedBody>,
     /// The inertia of each link: lower triangle of the symmetric 6 by 6 matrix, row by row.
-    inertia: Vec<[Pair; 21]>,
+    inertia: Vec<[DampingPair; 21]>,
     /// One for each degree of freedom.
-    released: Vec<Released>,
+    released: Vec<ArticulatedDof>,
     /// Working memory of a solution: links, links, degrees of freedom.
     force: Vec<Spatial>,
     acc: Vec<Spatial>,
@@ -43,7 +43,7 @@ pub struct Articulated {
     forces: Vec<four::Four6>,
 }
 
-/// A body that joints move, and which has joints or carries some.
+/// A body that joints move, with joints of its own or of a descendant.
 #[derive(Clone, Debug)]
 struct Link {
     body: usize,
@@ -57,20 +57,20 @@ struct Link {
     turning: Range<usize>,
 }
 
-/// A body that is fixed to a link, with all that it carries.
+/// A body that is fixed to a link, with its descendants.
 #[derive(Clone, Copy, Debug)]
-struct Load {
+struct FixedBody {
     body: usize,
     link: usize,
 }
 
 /// A degree of freedom of an articulated body.
 #[derive(Clone, Copy, Debug, Default)]
-struct Released {
+struct ArticulatedDof {
     /// Force of a unit acceleration of it alone.
-    unit_force: [Pair; 6],
+    unit_force: [DampingPair; 6],
     /// Inverse of the inertia that it feels.
-    inverse: Pair,
+    inverse: DampingPair,
 }
 
 /// Returns the index of row `i`, column `j <= i` in a packed lower triangle.
@@ -99,7 +99,7 @@ impl Articulated {
         for b in (1..nb).rev() {
             bears[model.body_parentid[b]] |= bears[b];
         }
-        // what is fixed to the world takes no part
+        // bodies that are fixed to the world take no part
         let (mut links, mut loads) = (Vec::new(), Vec::new());
         let mut link_of = vec![None; nb];
         for b in 1..nb {
@@ -117,13 +117,13 @@ impl Articulated {
                     free,
                 });
             } else if let Some(link) = parent {
-                loads.push(Load { body: b, link });
+                loads.push(FixedBody { body: b, link });
             }
         }
         loads.reverse();
         Self {
             inertia: vec![[[0.0; 2]; 21]; links.len()],
-            released: vec![Released::default(); model.nv],
+            released: vec![ArticulatedDof::default(); model.nv],
             force: vec![[0.0; 6]; links.len()],
             acc: vec![[0.0; 6]; links.len()],
             rest: vec![0.0; model.nv],
@@ -134,8 +134,9 @@ impl Articulated {
     }
 
     /// Computes the inertias from `cinert`, the composite inertias, `cdof`, armature and damping.
+    #[doc(alias = "mj_factorM")]
     #[inline(always)]
-    pub fn update(&mut self, model: &Arrays, s: &State, composite: &Composite) {
+    pub fn update(&mut self, model: &Arrays, s: &State, composite: &CompositeInertia) {
         for (link, inertia) in self.links.iter().zip(&mut self.inertia) {
             *inertia = matrix(&s.cinert[link.body]).map(|v| [v; 2]);
         }
@@ -167,9 +168,9 @@ impl Articulated {
                     _ => unit_force(inertia, &s.cdof[d], extra),
                 };
                 self.released[d] = match k {
-                    // what is left after these is felt by the rest of them alone
+                    // the remaining inertia is felt by the remaining degrees of freedom alone
                     0..3 if link.free && !inwards => release(inertia, force, felt, 3..3 + k),
-                    // the world cannot be accelerated: what it would feel is of no consequence
+                    // the world cannot be accelerated, so its inertia is not needed
                     0 if !inwards => release(inertia, force, felt, 0..0),
                     _ => release(inertia, force, felt, 0..6),
                 };
@@ -185,6 +186,7 @@ impl Articulated {
     }
 
     /// Solves `M x = b` (nv), or with damping `(M + h D) x = b`.
+    #[doc(alias = "mj_solveM")]
     #[inline(always)]
     pub fn solve(&mut self, s: &State, damping: Damping, b: &[f64], x: &mut [f64]) {
         let links = 0..self.links.len();
@@ -267,7 +269,7 @@ impl Articulated {
 
 /// Returns the force of a unit acceleration of an articulated body along `axis`, and the inertia that is felt along it; `extra` adds to that.
 #[inline(always)]
-fn unit_force(inertia: &[Pair; 21], axis: &Spatial, extra: Pair) -> ([Pair; 6], Pair) {
+fn unit_force(inertia: &[DampingPair; 21], axis: &Spatial, extra: DampingPair) -> ([DampingPair; 6], DampingPair) {
     let (mut force, mut felt) = ([[0.0; 2]; 6], extra);
     for i in 0..6 {
         for j in 0..6 {
@@ -287,22 +289,27 @@ fn unit_force(inertia: &[Pair; 21], axis: &Spatial, extra: Pair) -> ([Pair; 6], 
 /// The same along a unit vector, in which only row `row` is 1: it picks a column. Products with zero are left out, which have no effect but on the sign of
 /// a zero: adding to zero has it, too.
 #[inline(always)]
-fn unit_force_along(inertia: &[Pair; 21], row: usize, extra: Pair) -> ([Pair; 6], Pair) {
+fn unit_force_along(inertia: &[DampingPair; 21], row: usize, extra: DampingPair) -> ([DampingPair; 6], DampingPair) {
     let force = std::array::from_fn(|i| {
         let [a, b] = inertia[at(i.max(row), i.min(row))];
         [0.0 + a, 0.0 + b]
     });
-    let [a, b]: Pair = force[row];
+    let [a, b]: DampingPair = force[row];
     (force, [extra[0] + a, extra[1] + b])
 }
 
 /// Lets an articulated body move along an axis of which the force and the inertia are given: takes out of its inertia what that motion feels, in the rows and
 /// columns `left` that are still asked for.
 #[inline(always)]
-fn release(inertia: &mut [Pair; 21], force: [Pair; 6], felt: Pair, left: Range<usize>) -> Released {
+fn release(
+    inertia: &mut [DampingPair; 21],
+    force: [DampingPair; 6],
+    felt: DampingPair,
+    left: Range<usize>,
+) -> ArticulatedDof {
     let inverse = [1.0 / felt[0], 1.0 / felt[1]];
     for i in left.clone() {
-        // I - U D^-1 U': what moves freely with the joint is not felt beyond it
+        // I - U D^-1 U': inertia that moves freely with the joint is not felt beyond it
         let scaled = [force[i][0] * inverse[0], force[i][1] * inverse[1]];
         for j in left.start..=i {
             for k in 0..2 {
@@ -310,7 +317,7 @@ fn release(inertia: &mut [Pair; 21], force: [Pair; 6], felt: Pair, left: Range<u
             }
         }
     }
-    Released {
+    ArticulatedDof {
         unit_force: force,
         inverse,
     }
@@ -356,7 +363,7 @@ mod tests {
             *q += 0.3 * (k % 5) as f64 - 0.6;
         }
         engine.forward(&mut s).expect("finite");
-        let (mut bodies, mut composite) = (Articulated::new(model), Composite::default());
+        let (mut bodies, mut composite) = (Articulated::new(model), CompositeInertia::default());
         crate::dynamics::crb(model, &Topology::new(model), &mut s, &mut composite);
         bodies.update(model, &s, &composite);
         let x: Vec<f64> = (0..model.nv).map(|d| (d % 7) as f64 - 3.0).collect();

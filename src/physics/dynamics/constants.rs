@@ -4,10 +4,10 @@ use std::ops::Range;
 
 use crate::MAXVAL;
 use crate::dynamics::kinematics::local_to_global;
-use crate::dynamics::once::{com_pos, crb, kinematics, solve, update};
 use crate::dynamics::springs::{bias, slack, springs};
+use crate::dynamics::stages::{com_pos, crb, kinematics, solve, update};
 use crate::dynamics::transmission::{dense_moment, length, transmissions};
-use crate::dynamics::{Articulated, Composite, tendons};
+use crate::dynamics::{Articulated, CompositeInertia, tendons};
 use crate::math::*;
 use crate::model::{
     Arrays, CameraPose, Constants, EqualityKind, GeomType, JointType, Light, LightPose, SameFrame, Statistic, WeldPose,
@@ -18,6 +18,7 @@ use crate::topology::Topology;
 
 /// Computes inverse weights, the diagonal of the inertia, the statistics that are not given (zero), and the poses of welds
 /// that have none of their own (MuJoCo's `mj_setConst`).
+#[doc(alias = "mj_setConst")]
 pub fn constants(model: &Arrays) -> Constants {
     let topology = Topology::new(model);
     let mut s = State::new(model, &topology);
@@ -25,11 +26,11 @@ pub fn constants(model: &Arrays) -> Constants {
     com_pos(model, &mut s);
     tendons(model, &topology, &mut s);
     transmissions(model, &topology, &mut s);
-    let mut composite = Composite::default();
+    let mut composite = CompositeInertia::default();
     crb(model, &topology, &mut s, &mut composite);
     let diagonal = (0..model.nv).map(|d| topology.row(&s.qm, d).last().map_or(0.0, |(_, v)| v));
     let dof_m0: Vec<f64> = diagonal.collect();
-    let mut weights = Weights::new(model, &topology, &s, &composite);
+    let mut weights = InverseWeights::new(model, &topology, &s, &composite);
     let dof_invweight0 = weights.dofs();
     let (jnt_stiffness, dof_damping) = springs(model, &dof_invweight0);
     Constants {
@@ -107,7 +108,7 @@ pub const MAX_WEIGHT: f64 = 1e13;
 
 /// Computes inverse weights: the mean acceleration per unit force at `qpos0`, that is, the diagonal of `J M^-1 J'`, averaged
 /// over the three directions of translation and of rotation. The solver scales constraints by it.
-struct Weights<'a> {
+struct InverseWeights<'a> {
     model: &'a Arrays,
     topology: &'a Topology,
     s: &'a State,
@@ -118,8 +119,8 @@ struct Weights<'a> {
     x: Vec<f64>,
 }
 
-impl<'a> Weights<'a> {
-    fn new(model: &'a Arrays, topology: &'a Topology, s: &'a State, composite: &Composite) -> Self {
+impl<'a> InverseWeights<'a> {
+    fn new(model: &'a Arrays, topology: &'a Topology, s: &'a State, composite: &CompositeInertia) -> Self {
         let mut bodies = Articulated::new(model);
         update(&mut bodies, model, s, composite);
         let first = |tree: usize| model.jnt_bodyid[model.dof_jntid[topology.tree_adr[tree]]];

@@ -16,7 +16,7 @@ use crate::topology::Topology;
 /// As in MuJoCo, what does not fit the pattern of the tree is left out: a tendon's damping between joints of which neither is above the
 /// other; without bias forces, also what a body alone in the world has beside the diagonal.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Derivative {
+pub(super) struct VelocityDerivative {
     /// Derivatives of velocity, acceleration and force of each body by one coordinate.
     velocity: Vec<Spatial>,
     acc: Vec<Spatial>,
@@ -27,8 +27,9 @@ pub(super) struct Derivative {
     rows: Vec<(usize, Spatial)>,
 }
 
-impl Derivative {
+impl VelocityDerivative {
     /// Fills `out`; the bias forces count only where `bias` says so.
+    #[doc(alias = "mjd_smooth_vel")]
     pub fn fill(&mut self, model: &Model, topology: &Topology, s: &State, bias: bool, out: &mut TreeMatrix) {
         out.clear(topology);
         if model.opt.flags.actuation {
@@ -249,7 +250,7 @@ mod tests {
         let mut s = moving(&engine);
         forces(&mut engine, &mut s);
         let topology = Topology::new(engine.model());
-        let (mut derivative, mut matrix) = (Derivative::default(), TreeMatrix::default());
+        let (mut derivative, mut matrix) = (VelocityDerivative::default(), TreeMatrix::default());
         derivative.fill(engine.model(), &topology, &s, true, &mut matrix);
         (engine, s, topology, matrix)
     }

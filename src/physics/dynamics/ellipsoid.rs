@@ -12,10 +12,10 @@ use crate::state::State;
 use crate::topology::Topology;
 
 /// Derivatives of torque (3) and force (3) by angular velocity (3) and velocity (3).
-type Slopes = [[f64; 6]; 6];
+type FluidDerivatives = [[f64; 6]; 6];
 
 /// A geom that moves through the medium, all in its own axes.
-struct Swimmer {
+struct FluidGeom {
     /// Semi-axes of the ellipsoid, m.
     axes: Vec3,
     turning: Vec3,
@@ -41,11 +41,12 @@ fn swimmers<'a>(model: &'a Model, b: usize) -> impl Iterator<Item = usize> + use
     geoms.filter(|&g| model.geom_fluid[g][0] != 0.0)
 }
 
-/// Adds to `qfrc_passive` what the medium does to the geoms of a body.
+/// Adds the forces of the medium on the geoms of a body to `qfrc_passive`.
+#[doc(alias = "mj_ellipsoidFluidModel")]
 #[inline(never)]
 pub(super) fn swim(model: &Model, s: &mut State, b: usize) {
     for g in swimmers(model, b) {
-        let (torque, force) = Swimmer::new(model, s, g).wrench();
+        let (torque, force) = FluidGeom::new(model, s, g).wrench();
         let (mat, point) = (s.geom_xmat[g], s.geom_xpos[g]);
         let (torque, force) = (mat_vec(&mat, torque), mat_vec(&mat, force));
         let State {
@@ -59,6 +60,7 @@ pub(super) fn swim(model: &Model, s: &mut State, b: usize) {
 }
 
 /// Adds the derivatives of these forces by `qvel` to a matrix, symmetric ones where `symmetric`. `rows` is working memory.
+#[doc(alias = "mjd_ellipsoidFluid")]
 pub(super) fn swim_slopes(
     model: &Model,
     topology: &Topology,
@@ -68,7 +70,7 @@ pub(super) fn swim_slopes(
     out: &mut TreeMatrix,
 ) {
     for g in swimmers(model, b) {
-        let mut slopes = Swimmer::new(model, s, g).slopes();
+        let mut slopes = FluidGeom::new(model, s, g).slopes();
         if symmetric {
             let whole = slopes;
             for (i, row) in slopes.iter_mut().enumerate() {
@@ -116,7 +118,7 @@ fn crossing(v: Vec3) -> [Vec3; 3] {
 }
 
 /// Adds `scale` times a matrix, its columns weighted, to a quadrant.
-fn add_block(slopes: &mut Slopes, (row, col): (usize, usize), block: &[Vec3; 3], scale: f64, weights: Vec3) {
+fn add_block(slopes: &mut FluidDerivatives, (row, col): (usize, usize), block: &[Vec3; 3], scale: f64, weights: Vec3) {
     for i in 0..3 {
         for k in 0..3 {
             slopes[row + i][col + k] += scale * weights[k] * block[i][k];
@@ -124,7 +126,7 @@ fn add_block(slopes: &mut Slopes, (row, col): (usize, usize), block: &[Vec3; 3],
     }
 }
 
-impl Swimmer {
+impl FluidGeom {
     fn new(model: &Model, s: &State, g: usize) -> Self {
         let b = model.geom_bodyid[g];
         let (mat, offset) = (
@@ -203,7 +205,7 @@ impl Swimmer {
     fn wrench(&self) -> (Vec3, Vec3) {
         let (w, v, density) = (self.turning, self.moving, self.density);
         let [.., kutta, magnus] = self.coefs;
-        // what moves with the body
+        // velocities in the axes of the geom
         let momentum = |of: Vec3, by: Vec3| std::array::from_fn(|k| density * of[k] * by[k]);
         let (linear, turned) = (momentum(self.added[0], v), momentum(self.added[1], w));
         let mut torque = add(cross(linear, v), cross(turned, w));
@@ -227,7 +229,7 @@ impl Swimmer {
     }
 
     /// Returns the derivatives of torque and force.
-    fn slopes(&self) -> Slopes {
+    fn slopes(&self) -> FluidDerivatives {
         let mut out = [[0.0; 6]; 6];
         let (w, v, density) = (self.turning, self.moving, self.density);
         let each = [1.0; 3];

@@ -9,8 +9,9 @@ use crate::model::Model;
 use crate::spatial::*;
 use crate::state::State;
 
-/// Adds to `qfrc_passive` what a medium does to bodies that move in it: viscous resistance of a sphere and drag of a box, both of
+/// Adds the forces of a medium on moving bodies to `qfrc_passive`: viscous resistance of a sphere and drag of a box, both of
 /// the size of the box that has the body's mass and inertia ("inertia-based model" in MuJoCo's documentation).
+#[doc(alias = "mj_inertiaBoxFluidModel")]
 pub(super) fn medium(model: &Model, s: &mut State) {
     let opt = &model.opt;
     if opt.density == 0.0 && opt.viscosity == 0.0 {
@@ -50,6 +51,7 @@ fn relative_to_medium(model: &Model, s: &State, b: usize) -> (Vec3, Vec3) {
 
 /// Returns the derivatives of torque (3) and force (3) of a medium on a body by its own turning and moving along the same principal
 /// axis, N m s and N s/m.
+#[doc(alias = "mjd_inertiaBoxFluid")]
 pub(super) fn medium_slopes(model: &Model, s: &State, b: usize) -> [f64; 6] {
     let (turning, moving) = relative_to_medium(model, s, b);
     let (size, opt) = (box_of(s, b), &model.opt);
@@ -98,6 +100,7 @@ fn resistance(size: Vec3, turning: Vec3, moving: Vec3, density: f64, viscosity: 
 
 /// Computes `qfrc_gravcomp`, which holds up the part of the weight of each body that is compensated, and adds it to `qfrc_passive`, but
 /// for joints whose actuators do it.
+#[doc(alias = "mj_gravcomp")]
 pub(super) fn gravity_compensation(model: &Model, s: &mut State) {
     // MuJoCo 3.3.0 counts the positive ones: without any the others hold nothing, either
     if model.body_gravcomp.iter().all(|part| *part <= 0.0) {

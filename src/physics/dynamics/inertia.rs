@@ -7,10 +7,10 @@ use crate::tiles::{Lanes, ZERO, add_outer_products};
 use crate::tiles::{Tile, mul};
 use crate::topology::Topology;
 
-/// What is known of inertia within a step alone. It belongs to an engine: states take turns in the caches of a core, and what each of them
-/// writes is fetched from memory first and goes back there.
+/// Intermediate results of the inertia stage. They belong to an engine rather than a state, because states take turns in the caches of a core:
+/// an array of every state would be loaded from memory and written back in each step.
 #[derive(Clone, Debug, Default)]
-pub struct Composite {
+pub struct CompositeInertia {
     /// Composite inertias of subtrees (nbody).
     pub crb: Vec<Inertia>,
     /// Motion axes by tile: six values for each lane, zeros where there is none.
@@ -18,9 +18,10 @@ pub struct Composite {
 }
 
 /// Computes the composite inertias and `qm` from `cinert` and `cdof`, armature included (composite-rigid-body algorithm).
+#[doc(alias = "mj_crb")]
 #[inline(always)]
-pub fn crb(model: &Arrays, topology: &Topology, s: &mut State, composite: &mut Composite) {
-    let Composite { crb, axes } = composite;
+pub fn crb(model: &Arrays, topology: &Topology, s: &mut State, composite: &mut CompositeInertia) {
+    let CompositeInertia { crb, axes } = composite;
     crb.clear();
     crb.extend_from_slice(&s.cinert);
     axes.resize(topology.tiles.rows(), [[0.0; 4]; 6]);
@@ -74,6 +75,7 @@ pub fn crb(model: &Arrays, topology: &Topology, s: &mut State, composite: &mut C
 }
 
 /// Computes `out = M x` (nv), for a matrix in tiles. Allocates: the solvers work in lanes throughout.
+#[doc(alias = "mj_mulM")]
 pub fn mul_m(topology: &Topology, m: &[Tile], x: &[f64], out: &mut [f64]) {
     let mut lanes = vec![[0.0; 4]; topology.tiles.rows()];
     let mut product = lanes.clone();

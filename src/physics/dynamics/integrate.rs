@@ -2,7 +2,7 @@
 
 use crate::dynamics::activation;
 use crate::dynamics::articulated::{Articulated, Damping};
-use crate::dynamics::derivative::Derivative;
+use crate::dynamics::derivative::VelocityDerivative;
 use crate::dynamics::tree_matrix::TreeMatrix;
 use crate::math::{axis_angle_to_quat, quat_at, quat_mul, quat_normalize, unit};
 use crate::model::{IntegratorType, Model};
@@ -14,7 +14,7 @@ use crate::topology::Topology;
 pub struct Integrator {
     acc: Vec<f64>,
     force: Vec<f64>,
-    derivative: Derivative,
+    derivative: VelocityDerivative,
     matrix: TreeMatrix,
 }
 
@@ -26,6 +26,7 @@ impl Integrator {
     /// - Implicit: `(M - h d f / d v)^-1 f`; the fast one leaves Coriolis forces out of the derivative.
     ///
     /// `bodies` must be up to date.
+    #[doc(alias("mj_Euler", "mj_implicit"))]
     #[inline(always)]
     pub fn advance(&mut self, model: &Model, topology: &Topology, bodies: &mut Articulated, s: &mut State) {
         let h = model.opt.timestep;
@@ -69,7 +70,7 @@ impl Integrator {
     }
 }
 
-/// The fourth-order method of Runge and Kutta: the states that are evaluated on the way, and what each gives.
+/// The fourth-order method of Runge and Kutta: the intermediate states and their derivatives.
 #[derive(Clone, Debug, Default)]
 pub struct RungeKutta {
     qpos: Vec<f64>,
@@ -95,6 +96,7 @@ impl RungeKutta {
     ///
     /// As in MuJoCo, all that `evaluate` computes is that of the last evaluation afterwards: it leaves the sensors, and what they read, alone, so
     /// that these stay those of the start.
+    #[doc(alias = "mj_RungeKutta")]
     pub fn advance<E>(
         &mut self,
         model: &Model,
@@ -157,6 +159,7 @@ impl RungeKutta {
 }
 
 /// Computes `qpos (+)= h qvel`; quaternions turn by the body-frame angular velocity.
+#[doc(alias = "mj_integratePos")]
 #[inline(always)]
 pub fn integrate_pos(model: &Model, qpos: &mut [f64], qvel: &[f64], h: f64) {
     for j in 0..model.njnt() {

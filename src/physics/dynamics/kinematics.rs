@@ -28,7 +28,7 @@ pub fn kinematics(model: &Arrays, s: &mut State) {
             body(model, s, b);
         }
         // borrowed field by field, so that what is placed can be written beside it
-        let frame = Frame {
+        let frame = BodyFrames {
             pos: &s.xpos[b],
             quat: &s.xquat[b],
             mat: &s.xmat[b],
@@ -112,7 +112,7 @@ fn body(model: &Arrays, s: &mut State, b: usize) {
 }
 
 /// The frame of a body, and that of its principal axes.
-struct Frame<'a> {
+struct BodyFrames<'a> {
     pos: &'a Vec3,
     quat: &'a Quat,
     mat: &'a Mat3,
@@ -120,7 +120,7 @@ struct Frame<'a> {
     imat: &'a Mat3,
 }
 
-impl Frame<'_> {
+impl BodyFrames<'_> {
     /// Returns the world pose of something fixed in the body. A frame that is known already is copied.
     #[inline(always)]
     fn carry(&self, pos: Vec3, quat: Quat, same: SameFrame) -> (Vec3, Mat3) {
@@ -139,9 +139,10 @@ impl Frame<'_> {
 }
 
 /// Returns the world pose of something fixed in a body. A frame that is known already is copied.
+#[doc(alias = "mj_local2Global")]
 #[inline(always)]
 pub(super) fn local_to_global(s: &State, body: usize, pos: Vec3, quat: Quat, same: SameFrame) -> (Vec3, Mat3) {
-    let frame = Frame {
+    let frame = BodyFrames {
         pos: &s.xpos[body],
         quat: &s.xquat[body],
         mat: &s.xmat[body],
@@ -179,6 +180,7 @@ fn aimed(pos: Vec3, target: Vec3) -> (Vec3, Mat3) {
 }
 
 /// Computes `subtree_com, cinert, cdof` from poses.
+#[doc(alias = "mj_comPos")]
 #[inline(always)]
 pub fn com_pos(model: &Arrays, s: &mut State) {
     let nb = model.nbody();

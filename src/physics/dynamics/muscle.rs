@@ -8,10 +8,10 @@ use crate::math::MINVAL;
 use crate::model::Model;
 
 /// Parameters, as an actuator's gain or bias has them.
-type Parameters = [f64; 10];
+type MuscleParameters = [f64; 10];
 
-/// A muscle: what its force is a multiple of, and its length and velocity as its curves take them.
-struct Scaled {
+/// A muscle's peak force, with length and velocity scaled as its curves take them.
+struct ScaledMuscle {
     /// Isometric force, N.
     force: f64,
     /// Optimal length.
@@ -19,12 +19,14 @@ struct Scaled {
     length: f64,
 }
 
-impl Scaled {
-    fn new(model: &Model, actuator: usize, prm: &Parameters, length: f64) -> Self {
+impl ScaledMuscle {
+    fn new(model: &Model, actuator: usize, prm: &MuscleParameters, length: f64) -> Self {
         let &[low, high, force, scale, ..] = prm;
         let [shortest, longest] = model.actuator_lengthrange[actuator];
+        // `range` says how many optimal lengths the shortest and the longest length are
         let optimum = (longest - shortest) / (high - low).max(MINVAL);
         Self {
+            // `scale` is the acceleration that the muscle gives at `qpos0`, and `acc0` that of a unit force
             force: if force < 0.0 {
                 scale / model.actuator_acc0[actuator].max(MINVAL)
             } else {
@@ -36,7 +38,7 @@ impl Scaled {
     }
 
     /// Returns the active force at that length, relative to the greatest: four parabolas from `lmin` over 1 to `lmax`.
-    fn active(&self, prm: &Parameters) -> f64 {
+    fn active(&self, prm: &MuscleParameters) -> f64 {
         let (length, lmin, lmax) = (self.length, prm[4], prm[5]);
         if !(lmin..=lmax).contains(&length) {
             return 0.0;
@@ -59,15 +61,16 @@ impl Scaled {
     }
 
     /// Returns the velocity at which an unloaded muscle shortens, per second.
-    fn fastest(&self, prm: &Parameters) -> f64 {
+    fn fastest(&self, prm: &MuscleParameters) -> f64 {
         (self.optimum * prm[6]).max(MINVAL)
     }
 }
 
 /// Returns the gain of a muscle: minus its active force at full activation, N.
+#[doc(alias = "mju_muscleGain")]
 pub(super) fn gain(model: &Model, actuator: usize, length: f64, velocity: f64) -> f64 {
     let prm = &model.actuator_gainprm[actuator];
-    let muscle = Scaled::new(model, actuator, prm, length);
+    let muscle = ScaledMuscle::new(model, actuator, prm, length);
     let (v, fvmax) = (velocity / muscle.fastest(prm), prm[8]);
     let y = fvmax - 1.0;
     let by_velocity = if v <= -1.0 {
@@ -85,7 +88,7 @@ pub(super) fn gain(model: &Model, actuator: usize, length: f64, velocity: f64) -
 /// Returns the derivative of [`gain`] by the velocity.
 pub(super) fn gain_slope(model: &Model, actuator: usize, length: f64, velocity: f64) -> f64 {
     let prm = &model.actuator_gainprm[actuator];
-    let muscle = Scaled::new(model, actuator, prm, length);
+    let muscle = ScaledMuscle::new(model, actuator, prm, length);
     let fastest = muscle.fastest(prm);
     let (v, y) = (velocity / fastest, prm[8] - 1.0);
     let by_velocity = if v <= -1.0 {
@@ -102,10 +105,12 @@ pub(super) fn gain_slope(model: &Model, actuator: usize, length: f64, velocity: 
 
 /// Returns the bias of a muscle: minus its passive force, N, which grows with the square of the length beyond the optimum, and from
 /// half way to `lmax` on in proportion to it.
+#[doc(alias = "mju_muscleBias")]
 pub(super) fn bias(model: &Model, actuator: usize, length: f64) -> f64 {
     let prm = &model.actuator_biasprm[actuator];
-    let muscle = Scaled::new(model, actuator, prm, length);
+    let muscle = ScaledMuscle::new(model, actuator, prm, length);
     let (length, fpmax) = (muscle.length, prm[7]);
+    // half way to lmax, where the parabola becomes its tangent
     let b = 0.5 * (1.0 + prm[5]);
     if length <= 1.0 {
         0.0
@@ -121,7 +126,9 @@ pub(super) fn bias(model: &Model, actuator: usize, length: f64) -> f64 {
 /// Returns the rate of the activation of a muscle: it goes towards the control, faster up than down, with time constants that
 /// depend on the activation. `prm` is time constants of activation and deactivation, s, and the width of the transition between
 /// them.
-pub(super) fn rate(prm: &Parameters, ctrl: f64, act: f64) -> f64 {
+#[doc(alias = "mju_muscleDynamics")]
+pub(super) fn rate(prm: &MuscleParameters, ctrl: f64, act: f64) -> f64 {
+    // Millard, Uchida, Seth and Delp, "Flexing Computational Muscle", J. Biomech. Eng. 135(2), 2013
     let speed = 0.5 + 1.5 * act.clamp(0.0, 1.0);
     let (up, down, width) = (prm[0] * speed, prm[1] / speed, prm[2]);
     let excess = ctrl.clamp(0.0, 1.0) - act;
@@ -133,7 +140,7 @@ pub(super) fn rate(prm: &Parameters, ctrl: f64, act: f64) -> f64 {
     excess / tau.max(MINVAL)
 }
 
-/// Goes from 0 to 1 with two continuous derivatives.
+/// Rises from 0 to 1 with two continuous derivatives: a polynomial of degree five (MuJoCo's `mju_sigmoid`).
 fn smooth_step(x: f64) -> f64 {
     if x <= 0.0 {
         0.0

@@ -1,4 +1,4 @@
-//! Body accelerations and internal wrenches after the constraint solver: what accelerometers and torque sensors read.
+//! Body accelerations and internal wrenches after the constraint solver, which accelerometers and torque sensors read.
 
 use crate::constraint::{ConstraintType, connected_points, weld_points};
 use crate::dynamics::BiasScratch;
@@ -8,12 +8,13 @@ use crate::model::{EqualityKind, Model};
 use crate::spatial::*;
 use crate::state::State;
 
-/// Computes `cacc, cfrc_ext, cfrc_int` from `qacc`, the constraint forces and what the velocity stage left (recursive Newton-Euler with
-/// the joint accelerations known).
+/// Computes `cacc, cfrc_ext, cfrc_int` from `qacc`, the constraint forces and the buffers of the velocity stage (recursive Newton-Euler with
+/// known joint accelerations).
 ///
-/// `cfrc_ext` holds contacts, connections, welds and the forces that a caller applies to bodies; joint limits, friction loss, springs and actuators act inside joints and so show
-/// in `cfrc_int`. With `double_weld_torque` the rotational rows of a weld count as a torque, as MuJoCo 3.3.0 has it,
+/// `cfrc_ext` holds contacts, connections, welds and the forces that a caller applies to bodies. Joint limits, friction loss, springs and
+/// actuators act inside joints and so show in `cfrc_int`. With `double_weld_torque` the rotational rows of a weld count as a torque, as MuJoCo 3.3.0 has it,
 /// although their Jacobian is about half the angular one: the wrench is then about twice the true one.
+#[doc(alias = "mj_rnePostConstraint")]
 #[inline(always)]
 pub fn rne_post_constraint(model: &Model, s: &mut State, bias: &BiasScratch, double_weld_torque: bool) {
     let nb = model.nbody();
@@ -24,6 +25,7 @@ pub fn rne_post_constraint(model: &Model, s: &mut State, bias: &BiasScratch, dou
         ext[body] = wrench_from(torque, force, offset);
     }
     s.cfrc_ext = ext;
+    // contacts that are no constraint, because they are in the gap or rows are switched off, have no force
     for i in 0..s.contact.len() {
         let c = &s.contact[i];
         if c.efc_address.is_none() {
@@ -38,6 +40,7 @@ pub fn rne_post_constraint(model: &Model, s: &mut State, bias: &BiasScratch, dou
     }
     apply_equalities(model, s, double_weld_torque);
     let g = s.params.gravity;
+    // gravity as an acceleration of the world: accelerometers at rest then read 9.81 m/s^2 upwards
     s.cacc[0] = [0.0, 0.0, 0.0, -g[0], -g[1], -g[2]];
     s.cfrc_int[0] = [0.0; 6];
     let (cacc, cfrc_int) = (&mut s.cacc[..nb], &mut s.cfrc_int[..nb]);
@@ -96,6 +99,7 @@ fn apply_equalities(model: &Model, s: &mut State, double_weld_torque: bool) {
 /// Adds `sign` times a wrench at a point to `cfrc_ext`.
 #[inline(always)]
 fn apply(model: &Model, s: &mut State, body: usize, torque: Vec3, force: Vec3, point: Vec3, sign: f64) {
+    // nothing reads the wrench on the world
     if body > 0 {
         let offset = sub(point, s.subtree_com[model.body_rootid[body]]);
         axpy6(&mut s.cfrc_ext[body], sign, &wrench_from(torque, force, offset));

@@ -1,6 +1,6 @@
 //! Parameters of springs and servos that follow from their rest configuration and the inertia at `qpos0`.
 
-use crate::dynamics::once::{com_pos, kinematics};
+use crate::dynamics::stages::{com_pos, kinematics};
 use crate::dynamics::tendons;
 use crate::dynamics::transmission::moment;
 use crate::math::MINVAL;

@@ -1,15 +1,16 @@
 //! Tendons: their lengths, the Jacobians of these, and the points that spatial tendons pass.
 
-use crate::dynamics::wrap::{Round, wrap};
+use crate::dynamics::wrap::{WrapShape, wrap};
 use crate::math::*;
 use crate::model::{Arrays, Wrap};
 use crate::spatial::{Spatial, angular, linear};
 use crate::state::State;
-use crate::tendon_paths::{PathDof, SegmentKind, Span};
 use crate::topology::Topology;
+use crate::topology::tendon_paths::{PathDof, SegmentKind, StraightSegment};
 
 /// Computes lengths, Jacobians and rates of all tendons, and the points of spatial ones: `ten_length, ten_j, ten_velocity,
 /// ten_wrapadr, ten_wrapnum, wrap_xpos, wrap_obj`. Poses and `cdof` must be up to date.
+#[doc(alias = "mj_tendon")]
 #[inline(always)]
 pub fn tendons(model: &Arrays, topology: &Topology, s: &mut State) {
     let mut points = 0;
@@ -62,7 +63,7 @@ fn spatial(topology: &Topology, s: &mut State, t: usize, points: &mut usize) {
             continue;
         };
         let [a, b] = [sites[stretch.sites[0]], sites[stretch.sites[1]]];
-        let mut add = |span: &Span, a: Vec3, b: Vec3| {
+        let mut add = |span: &StraightSegment, a: Vec3, b: Vec3| {
             has_entries |= span.moves;
             let (direction, length) = unit(sub(b, a));
             let along = scale(direction, stretch.share);
@@ -81,7 +82,7 @@ fn spatial(topology: &Topology, s: &mut State, t: usize, points: &mut usize) {
                 }
                 SegmentKind::Geom(obstacle) => {
                     let geom = obstacle.geom;
-                    let round = Round {
+                    let round = WrapShape {
                         pos: s.geom_xpos[geom],
                         mat: &s.geom_xmat[geom],
                         radius: s.params.geom_size[geom][0],

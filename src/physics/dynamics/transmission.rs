@@ -6,7 +6,8 @@ use crate::spatial::{Spatial, angular, velocity_at};
 use crate::state::State;
 use crate::topology::Topology;
 
-/// Returns the gear by which an actuator's length follows from what it acts on. Muscles of an actuation model act on joints themselves.
+/// Returns the gear of an actuator: the ratio of its length to the coordinate that it acts on. Muscles of an actuation model act on joints
+/// directly.
 pub(super) fn gear(s: &State, actuator: usize) -> f64 {
     if s.muscle_torque.is_empty() {
         s.params.actuator_gear[actuator]
@@ -15,7 +16,7 @@ pub(super) fn gear(s: &State, actuator: usize) -> f64 {
     }
 }
 
-/// Returns the length of an actuator with a gear on what it acts on.
+/// Returns the length of an actuator with a gear.
 #[inline(always)]
 pub(super) fn length(model: &Arrays, topology: &Topology, s: &State, actuator: usize, gear: f64) -> f64 {
     match topology.actuator_scalar[actuator] {
@@ -61,6 +62,7 @@ pub(super) fn moment(
 }
 
 /// Computes the derivative of an actuator's length by the degrees of freedom (nv).
+#[doc(alias = "actuator_moment")]
 pub fn dense_moment(model: &Arrays, topology: &Topology, s: &State, actuator: usize, out: &mut [f64]) {
     out.fill(0.0);
     let gear = s.params.actuator_gear[actuator];
@@ -69,6 +71,7 @@ pub fn dense_moment(model: &Arrays, topology: &Topology, s: &State, actuator: us
 
 /// Computes lengths and moments of actuators on ball joints, free joints, sites, slider-cranks and contacts: `actuator_length`, `actuator_moment`. Poses, `cdof`
 /// and contacts with their rows must be up to date.
+#[doc(alias = "mj_transmission")]
 #[inline(always)]
 pub fn transmissions(model: &Arrays, topology: &Topology, s: &mut State) {
     for &i in &topology.own_moments {
@@ -82,7 +85,7 @@ fn own(model: &Arrays, topology: &Topology, s: &mut State, i: usize) {
     let row = topology.actuators.range(i);
     s.actuator_moment[row.clone()].fill(0.0);
     let mut arms = std::mem::take(&mut s.actuator_moment);
-    let mut moment = Moment {
+    let mut moment = TransmissionMoment {
         model,
         topology,
         dofs: topology.actuators.row(i),
@@ -98,15 +101,15 @@ fn own(model: &Arrays, topology: &Topology, s: &mut State, i: usize) {
     s.actuator_moment = arms;
 }
 
-/// The moment of an actuator in the making.
-struct Moment<'a> {
+/// Accumulates the moment arms of an actuator.
+struct TransmissionMoment<'a> {
     model: &'a Arrays,
     topology: &'a Topology,
     dofs: &'a [u32],
     arms: &'a mut [f64],
 }
 
-impl Moment<'_> {
+impl TransmissionMoment<'_> {
     /// Adds to the entries of some degrees of freedom, which ascend, what follows from their motion axes.
     fn add(&mut self, s: &State, chain: &[u32], arm: impl Fn(&Spatial) -> f64) {
         let mut place = 0;

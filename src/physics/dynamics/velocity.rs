@@ -9,6 +9,7 @@ use crate::state::State;
 use crate::topology::Topology;
 
 /// Computes `cvel` and `cdof_dot` from `qvel`.
+#[doc(alias = "mj_comVel")]
 #[inline(always)]
 pub fn com_vel(model: &Model, s: &mut State) {
     s.cvel[0] = [0.0; 6];
@@ -49,7 +50,7 @@ pub struct BiasScratch {
 }
 
 impl BiasScratch {
-    /// Computes what the velocity stage leaves of a state, whose velocity stage is done.
+    /// Recomputes the buffers of the velocity stage for a state after that stage.
     pub fn of(s: &State) -> Self {
         Self {
             gyroscopic: s.cinert.iter().zip(&s.cvel).map(|(i, v)| turning(i, v)).collect(),
@@ -82,6 +83,7 @@ fn lengths(model: &Model, topology: &Topology, s: &mut State) {
 
 /// Computes `cvel, cdof_dot, qfrc_bias, qfrc_passive`, lengths of actuators and their rates: springs `-k (q - springref)`, dampers `-d v`, and the recursive
 /// Newton-Euler algorithm at zero joint acceleration.
+#[doc(alias("mj_fwdVelocity", "mj_passive", "mj_rne"))]
 #[inline(always)]
 pub fn fwd_velocity(model: &Model, topology: &Topology, s: &mut State, scratch: &mut BiasScratch) {
     lengths(model, topology, s);

@@ -11,17 +11,17 @@ use crate::math::*;
 /// A point of the plane of the circle.
 type Vec2 = [f64; 2];
 
-/// A shape to wrap around.
-pub(super) struct Round<'a> {
+/// A sphere or cylinder that a tendon wraps around.
+pub(super) struct WrapShape<'a> {
     pub pos: Vec3,
     pub mat: &'a Mat3,
     pub radius: f64,
     pub cylinder: bool,
 }
 
-/// Where a string lies on a shape.
-pub(super) struct Wrapped {
-    /// Where it comes onto the shape and where it leaves it, world, m.
+/// The part of a tendon that lies on a shape.
+pub(super) struct WrapPath {
+    /// Points where it meets and leaves the shape, world, m.
     pub points: [Vec3; 2],
     /// Length between them along the shape, m.
     pub length: f64,
@@ -54,7 +54,8 @@ fn unit2(a: Vec2) -> Vec2 {
 
 /// Wraps a string between two points around a shape, on the side of a third one if there is one, world, m. A third one that is nearer
 /// to the centre than the radius makes it pass inside. Returns nothing where the string is straight.
-pub(super) fn wrap(ends: [Vec3; 2], round: &Round, side: Option<Vec3>) -> Option<Wrapped> {
+#[doc(alias = "mju_wrap")]
+pub(super) fn wrap(ends: [Vec3; 2], round: &WrapShape, side: Option<Vec3>) -> Option<WrapPath> {
     let local = |p: Vec3| mat_t_vec(round.mat, sub(p, round.pos));
     let p = [local(ends[0]), local(ends[1])];
     if norm(p[0]) < MINVAL || norm(p[1]) < MINVAL {
@@ -83,7 +84,7 @@ pub(super) fn wrap(ends: [Vec3; 2], round: &Round, side: Option<Vec3>) -> Option
     }
     let placed = |point: Vec3| add(mat_vec(round.mat, point), round.pos);
     let points = [placed(points[0]), placed(points[1])];
-    Some(Wrapped { points, length })
+    Some(WrapPath { points, length })
 }
 
 /// Returns the axes of the plane of the circle, in the frame of the shape.
@@ -277,8 +278,8 @@ fn inside(d: [Vec2; 2], radius: f64) -> Option<[Vec2; 2]> {
 mod tests {
     use super::*;
 
-    fn ball(radius: f64) -> Round<'static> {
-        Round {
+    fn ball(radius: f64) -> WrapShape<'static> {
+        WrapShape {
             pos: [0.0; 3],
             mat: &MAT3_ID,
             radius,
@@ -315,7 +316,7 @@ mod tests {
 
     #[test]
     fn a_string_climbs_a_cylinder_evenly() {
-        let post = Round {
+        let post = WrapShape {
             cylinder: true,
             ..ball(1.0)
         };

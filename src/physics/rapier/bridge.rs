@@ -6,16 +6,17 @@ use rapier3d_f64::dynamics::{FrictionModel, IntegrationParameters};
 use rapier3d_f64::geometry::NarrowPhase;
 use rapier3d_f64::pipeline::{EventHandler, PhysicsWorld};
 
-use crate::contacts::{ContactAims, ContactHooks, read_contacts};
-use crate::rig::Rig;
+use crate::bodies::RapierBodies;
+use crate::contacts::{ContactHooks, ContactTargets, read_contacts};
 use crate::rows::{RapierRows, read_welds, softness};
-use crate::{ContactDispatcher, RapierError, RapierOptions, Sets};
+use crate::{ContactDispatcher, RapierError, RapierOptions, RapierSets};
 use mjcf_sim_model::model::Model;
+use mjcf_sim_physics::EngineError;
 use mjcf_sim_physics::collision::{PairTable, Sweep, contact_options};
 use mjcf_sim_physics::constraint::RowBuilder;
 use mjcf_sim_physics::contact::{ContactOptions, Quirks};
 use mjcf_sim_physics::dynamics::*;
-use mjcf_sim_physics::engine::{EngineError, Stage, check_contacts, check_input, check_motion, check_output};
+use mjcf_sim_physics::engine::{Stage, check_contacts, check_input, check_motion, check_output};
 use mjcf_sim_physics::params::Params;
 use mjcf_sim_physics::state::{RESERVED_CONTACTS, State};
 use mjcf_sim_physics::topology::Topology;
@@ -33,14 +34,14 @@ pub struct Bridge {
     model: Arc<Model>,
     topology: Arc<Topology>,
     pairs: Arc<PairTable>,
-    rig: Arc<Rig>,
+    rig: Arc<RapierBodies>,
     options: RapierOptions,
     contact: ContactOptions,
     sweep: Sweep,
     rows: RapierRows,
-    aims: ContactAims,
+    aims: ContactTargets,
     integrator: Integrator,
-    composite: Composite,
+    composite: CompositeInertia,
     bias: BiasScratch,
     sensor_scratch: SensorScratch,
     builder: RowBuilder,
@@ -61,13 +62,13 @@ impl std::fmt::Debug for Bridge {
 impl Bridge {
     /// Inserts `model` into a world.
     ///
-    /// Gravity acts on the model as the model says, whatever that of the world is.
+    /// The gravity of the model acts on its bodies, and that of the world on all others.
     ///
     /// # Errors
     /// Fails if the model has elements that Rapier's multibodies cannot represent.
-    pub fn insert(model: Arc<Model>, options: RapierOptions, sets: &mut Sets) -> Result<Self, RapierError> {
+    pub fn insert(model: Arc<Model>, options: RapierOptions, sets: &mut RapierSets) -> Result<Self, RapierError> {
         let topology = Topology::new(&model);
-        let rig = Rig::insert(&model, &topology, sets)?;
+        let rig = RapierBodies::insert(&model, &topology, sets)?;
         let pairs = Arc::new(PairTable::new(&model));
         Ok(Self::new(model, Arc::new(topology), pairs, Arc::new(rig), options))
     }
@@ -76,16 +77,16 @@ impl Bridge {
         model: Arc<Model>,
         topology: Arc<Topology>,
         pairs: Arc<PairTable>,
-        rig: Arc<Rig>,
+        rig: Arc<RapierBodies>,
         options: RapierOptions,
     ) -> Self {
         let contact = contact_options(&model, Quirks::default());
         Self {
             sweep: Sweep::new(&model, &pairs, contact),
             rows: RapierRows::default(),
-            aims: ContactAims::default(),
+            aims: ContactTargets::default(),
             integrator: Integrator::default(),
-            composite: Composite::default(),
+            composite: CompositeInertia::default(),
             bias: BiasScratch::default(),
             sensor_scratch: SensorScratch::default(),
             builder: RowBuilder::new(&model, &topology),
@@ -118,7 +119,7 @@ impl Bridge {
     }
 
     /// Returns the model's bodies and colliders in the world.
-    pub fn rig(&self) -> &Rig {
+    pub fn rig(&self) -> &RapierBodies {
         &self.rig
     }
 
@@ -179,9 +180,9 @@ impl Bridge {
         world: &mut PhysicsWorld,
         events: &dyn EventHandler,
     ) -> Result<(), EngineError> {
-        self.before(s, &mut Sets::from(&mut *world))?;
+        self.before(s, &mut RapierSets::from(&mut *world))?;
         world.step_with_events(&self.hooks(), events);
-        let sets = Sets {
+        let sets = RapierSets {
             bodies: &mut world.bodies,
             colliders: &mut world.colliders,
             impulse_joints: &mut world.impulse_joints,
@@ -195,7 +196,7 @@ impl Bridge {
     ///
     /// # Errors
     /// Fails if the state does not fit the model or is not finite.
-    pub fn before(&mut self, s: &mut State, sets: &mut Sets) -> Result<(), EngineError> {
+    pub fn before(&mut self, s: &mut State, sets: &mut RapierSets) -> Result<(), EngineError> {
         self.compute(s, &mut |_| {})?;
         self.load(s, sets);
         Ok(())
@@ -232,7 +233,7 @@ impl Bridge {
         Ok(())
     }
 
-    pub(super) fn load(&mut self, s: &State, sets: &mut Sets) {
+    pub(super) fn load(&mut self, s: &State, sets: &mut RapierSets) {
         let (model, topology, h) = (&*self.model, &*self.topology, self.model.opt.timestep);
         self.rig.load(model, topology, s, sets, &mut self.force);
         self.rows.load(&self.rig, model, topology, &mut self.inertia, s, sets);
@@ -248,11 +249,11 @@ impl Bridge {
         }
     }
 
-    /// Takes accelerations and the forces of contacts and welds out of the world, and computes what follows from them.
+    /// Reads accelerations and the forces of contacts and welds from the world, and computes the quantities that depend on them.
     ///
     /// # Errors
     /// Fails if the simulation diverged.
-    pub fn after(&mut self, s: &mut State, sets: &Sets, narrow: &NarrowPhase) -> Result<(), EngineError> {
+    pub fn after(&mut self, s: &mut State, sets: &RapierSets, narrow: &NarrowPhase) -> Result<(), EngineError> {
         let (model, h) = (&*self.model, self.model.opt.timestep);
         self.rig.velocities(model, s, sets, &mut self.velocity);
         for d in 0..model.nv {

@@ -7,7 +7,7 @@ use rapier3d_f64::geometry::{ContactData, ContactManifold, NarrowPhase, SolverFl
 use rapier3d_f64::parry::math::Vector;
 use rapier3d_f64::pipeline::{ContactModificationContext, PairFilterContext, PhysicsHooks};
 
-use crate::rig::Rig;
+use crate::bodies::RapierBodies;
 use crate::scene::{geom_pose, pose};
 use mjcf_sim_model::math::*;
 use mjcf_sim_model::model::{ConeType, Model};
@@ -17,7 +17,7 @@ use mjcf_sim_physics::state::{Contact, State};
 
 /// The aim of Rapier's solver for one contact.
 #[derive(Clone, Copy, Debug)]
-struct ContactAim {
+struct ContactTarget {
     geom: [usize; 2],
     /// Velocity of the second geom relative to the first, in the frame of the contact, m/s.
     velocity: Vec3,
@@ -40,20 +40,20 @@ struct TouchingPair {
     number: usize,
 }
 
-/// The contacts of a step as Rapier's solver shall see them.
+/// The contacts of a step, prepared for Rapier's solver.
 #[derive(Clone, Debug, Default)]
-pub(super) struct ContactAims {
+pub(super) struct ContactTargets {
     /// Pairs that touch, ascending.
     pairs: Vec<TouchingPair>,
     /// The aim of each contact of the state; `None` where it is not a constraint.
-    aims: Vec<Option<ContactAim>>,
+    aims: Vec<Option<ContactTarget>>,
     /// Frames of the contacts.
     frames: Vec<Mat3>,
     h: f64,
     rate: f64,
 }
 
-impl ContactAims {
+impl ContactTargets {
     /// Loads the contacts and rows of a state. `rate` is the rate at which Rapier reduces penetration, 1/s.
     pub fn load(&mut self, s: &State, h: f64, rate: f64) {
         (self.h, self.rate) = (h, rate);
@@ -92,7 +92,7 @@ impl ContactAims {
                 (ConstraintType::ContactPyramidal, r) => 0.5 * (edge(r).0 - edge(r).1) / c.friction[r - 1],
                 _ => row(r),
             };
-            self.aims[block.id] = Some(ContactAim {
+            self.aims[block.id] = Some(ContactTarget {
                 geom: c.geom,
                 velocity: std::array::from_fn(|r| if r < c.dim { aim(r) } else { 0.0 }),
                 friction: if c.dim > 1 { c.friction[0] } else { 0.0 },
@@ -122,8 +122,8 @@ impl ContactAims {
 /// colliders that are not the model's are left to Rapier.
 #[derive(Clone, Copy)]
 pub struct ContactHooks<'a> {
-    pub(super) rig: &'a Rig,
-    pub(super) aims: &'a ContactAims,
+    pub(super) rig: &'a RapierBodies,
+    pub(super) aims: &'a ContactTargets,
 }
 
 impl std::fmt::Debug for ContactHooks<'_> {

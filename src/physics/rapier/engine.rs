@@ -9,14 +9,14 @@ use rapier3d_f64::geometry::{BroadPhaseBvh, ColliderSet};
 use rapier3d_f64::parry::math::Vector;
 use rapier3d_f64::pipeline::PhysicsPipeline;
 
+use crate::bodies::RapierBodies;
 use crate::bridge::Bridge;
-use crate::rig::Rig;
-use crate::{RapierError, RapierOptions, Sets};
+use crate::{RapierError, RapierOptions, RapierSets};
 use mjcf_sim_model::model::{IntegratorType, Model};
 use mjcf_sim_physics::collision::PairTable;
-use mjcf_sim_physics::engine::{Engine, EngineError, Probe, Stage};
 use mjcf_sim_physics::state::State;
 use mjcf_sim_physics::topology::Topology;
+use mjcf_sim_physics::{Engine, EngineError, Probe, Stage};
 
 /// The sets of a world of our own.
 #[derive(Clone, Debug, Default)]
@@ -28,8 +28,8 @@ struct OwnedSets {
 }
 
 impl OwnedSets {
-    fn sets(&mut self) -> Sets<'_> {
-        Sets {
+    fn sets(&mut self) -> RapierSets<'_> {
+        RapierSets {
             bodies: &mut self.bodies,
             colliders: &mut self.colliders,
             impulse_joints: &mut self.impulse_joints,
@@ -45,7 +45,7 @@ pub struct RapierModel {
     options: RapierOptions,
     topology: Arc<Topology>,
     pairs: Arc<PairTable>,
-    rig: Arc<Rig>,
+    rig: Arc<RapierBodies>,
     /// The world before its first step.
     pristine: Arc<OwnedSets>,
 }
@@ -65,7 +65,7 @@ impl RapierModel {
         }
         let topology = Topology::new(&model);
         let mut pristine = OwnedSets::default();
-        let rig = Rig::insert(&model, &topology, &mut pristine.sets())?;
+        let rig = RapierBodies::insert(&model, &topology, &mut pristine.sets())?;
         Ok(Self {
             pairs: Arc::new(PairTable::new(&model)),
             options,
@@ -169,10 +169,6 @@ impl Engine for RapierEngine {
 
     fn topology(&self) -> &Topology {
         self.bridge.topology()
-    }
-
-    fn pairs(&self) -> &PairTable {
-        self.bridge.pairs()
     }
 
     fn forward(&mut self, s: &mut State) -> Result<(), EngineError> {

@@ -47,7 +47,7 @@ impl HullShape {
     }
 }
 
-/// Returns a shape that Parry knows: what stands for a mesh, or the shape itself.
+/// Returns a shape that Parry knows: the substitute for a mesh, or the shape itself.
 pub(super) fn plain(shape: &dyn Shape) -> &dyn Shape {
     match shape.as_shape::<HullShape>() {
         Some(hull) => &*hull.parry,

@@ -29,13 +29,13 @@
 
 #[cfg(test)]
 mod activation_tests;
+mod bodies;
 mod bridge;
 mod contacts;
 mod dispatcher;
 mod engine;
 mod hull;
 mod inertial;
-mod rig;
 mod rows;
 mod scene;
 mod support;
@@ -45,6 +45,7 @@ use rapier3d_f64::geometry::ColliderSet;
 use rapier3d_f64::pipeline::PhysicsWorld;
 use thiserror::Error;
 
+pub use bodies::RapierBodies;
 pub use bridge::Bridge;
 pub use contacts::ContactHooks;
 pub use dispatcher::ContactDispatcher;
@@ -52,12 +53,11 @@ pub use engine::RapierEngine;
 pub use engine::RapierModel;
 /// Rapier, as it is part of this interface: [`rapier3d_f64::parry`] is the Parry beneath it.
 pub use rapier3d_f64;
-pub use rig::Rig;
 pub use scene::{RapierScene, SceneContact};
 
 /// Borrows the sets of a Rapier world.
 #[derive(Debug)]
-pub struct Sets<'a> {
+pub struct RapierSets<'a> {
     /// Bodies.
     pub bodies: &'a mut RigidBodySet,
     /// Colliders.
@@ -68,7 +68,7 @@ pub struct Sets<'a> {
     pub multibody_joints: &'a mut MultibodyJointSet,
 }
 
-impl<'a> From<&'a mut PhysicsWorld> for Sets<'a> {
+impl<'a> From<&'a mut PhysicsWorld> for RapierSets<'a> {
     fn from(world: &'a mut PhysicsWorld) -> Self {
         Self {
             bodies: &mut world.bodies,

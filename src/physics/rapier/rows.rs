@@ -11,8 +11,8 @@ use rapier3d_f64::dynamics::{
 };
 use rapier3d_f64::parry::math::{Pose, Vector};
 
-use crate::Sets;
-use crate::rig::Rig;
+use crate::RapierSets;
+use crate::bodies::RapierBodies;
 use mjcf_sim_model::math::*;
 use mjcf_sim_model::model::{EqualityKind, Model};
 use mjcf_sim_physics::constraint::{Block, ConstraintType, Weld, weld_points};
@@ -26,12 +26,12 @@ const ANG_X: usize = 3;
 /// The aim of a row: the velocity at the end of the step, and the compliance, velocity per impulse, with which it gives
 /// way.
 #[derive(Clone, Copy, Debug, Default)]
-struct Aim {
+struct RowTarget {
     velocity: f64,
     compliance: f64,
 }
 
-impl Aim {
+impl RowTarget {
     fn of(s: &State, row: usize, h: f64) -> Self {
         Self {
             velocity: s.efc.vel[row] + h * s.efc.aref[row],
@@ -39,7 +39,7 @@ impl Aim {
         }
     }
 
-    /// Combines what two rows ask for.
+    /// Combines the targets of two rows.
     fn and(self, other: Self) -> Self {
         let (x, y) = (1.0 / self.compliance, 1.0 / other.compliance);
         Self {
@@ -62,10 +62,10 @@ impl Aim {
 /// The constraint rows on a single degree of freedom.
 #[derive(Clone, Copy, Debug, Default)]
 struct DofRows {
-    lock: Option<Aim>,
+    lock: Option<RowTarget>,
     /// Sign of the limit's force, and its aim along it.
-    limit: Option<(f64, Aim)>,
-    friction: Option<(f64, Aim)>,
+    limit: Option<(f64, RowTarget)>,
+    friction: Option<(f64, RowTarget)>,
 }
 
 /// Returns the softness whose constraint force mixing is `ratio` times the inverse effective mass, and its rate of
@@ -84,15 +84,15 @@ pub(super) struct RapierRows {
 }
 
 impl RapierRows {
-    /// Sets the joints of the rig to what the rows of `s.efc` ask of them; contacts are left to the hooks.
+    /// Sets the motors of the joints to the targets of the rows of `s.efc`. The hooks handle contacts.
     pub fn load(
         &mut self,
-        rig: &Rig,
+        rig: &RapierBodies,
         model: &Model,
         topology: &Topology,
         inertia: &mut Articulated,
         s: &State,
-        sets: &mut Sets,
+        sets: &mut RapierSets,
     ) {
         let h = model.opt.timestep;
         self.dofs.clear();
@@ -101,7 +101,7 @@ impl RapierRows {
         self.response.resize(model.nv, 0.0);
         clear_joints(rig, sets);
         for block in &s.efc.blocks {
-            let aim = Aim::of(s, block.row, h);
+            let aim = RowTarget::of(s, block.row, h);
             match (block.kind, block.dof.map(|dof| dof as usize)) {
                 // models with it are refused
                 (ConstraintType::FrictionTendon, _) => {}
@@ -131,7 +131,14 @@ impl RapierRows {
     }
 
     /// Sets the motor, the limit and the dry friction of every hinge.
-    fn load_links(&mut self, rig: &Rig, model: &Model, inertia: &mut Articulated, s: &State, sets: &mut Sets) {
+    fn load_links(
+        &mut self,
+        rig: &RapierBodies,
+        model: &Model,
+        inertia: &mut Articulated,
+        s: &State,
+        sets: &mut RapierSets,
+    ) {
         let h = model.opt.timestep;
         for link in &rig.links {
             let rows = self.dofs[link.dof];
@@ -154,7 +161,7 @@ impl RapierRows {
         }
     }
 
-    fn add_lock(&mut self, dof: usize, aim: Aim) {
+    fn add_lock(&mut self, dof: usize, aim: RowTarget) {
         let rows = &mut self.dofs[dof];
         rows.lock = Some(rows.lock.map_or(aim, |other| other.and(aim)));
     }
@@ -180,7 +187,7 @@ impl RapierRows {
         row: [(usize, f64); 2],
     ) -> Option<f64> {
         let h = model.opt.timestep;
-        let aim = Aim::of(s, block.row, h);
+        let aim = RowTarget::of(s, block.row, h);
         let free: f64 = row.iter().map(|&(d, v)| v * (s.qvel[d] + h * s.qacc_smooth[d])).sum();
         let effective = self.quadratic(inertia, s, &row);
         let impulse = (aim.velocity - free) / (effective + aim.compliance);
@@ -190,7 +197,7 @@ impl RapierRows {
 }
 
 /// Takes the couplings and motors of the last step off the joints.
-fn clear_joints(rig: &Rig, sets: &mut Sets) {
+fn clear_joints(rig: &RapierBodies, sets: &mut RapierSets) {
     for tree in rig.trees.iter().filter(|t| t.articulated) {
         if let Some(id) = sets.multibody_joints.rigid_body_link(tree.root).copied()
             && let Some(multibody) = sets.multibody_joints.get_multibody_mut(id.multibody)
@@ -207,7 +214,7 @@ fn clear_joints(rig: &Rig, sets: &mut Sets) {
 
 /// Sets a row on two joints as a coupling of Rapier, which is stiff and acts both ways: aimed at [`RapierRows::target`], it
 /// gives way as the row should.
-fn couple(rig: &Rig, [(d1, j1), (d2, j2)]: [(usize, f64); 2], target: f64, h: f64, sets: &mut Sets) {
+fn couple(rig: &RapierBodies, [(d1, j1), (d2, j2)]: [(usize, f64); 2], target: f64, h: f64, sets: &mut RapierSets) {
     let link = |dof: usize| rig.links.iter().find(|l| l.dof == dof);
     let (Some(first), Some(second)) = (link(d1), link(d2)) else {
         return;
@@ -249,7 +256,7 @@ fn nonzero(topology: &Topology, s: &State, block: &Block) -> impl Iterator<Item 
 
 /// The setting of a Rapier joint for a step.
 #[derive(Clone, Copy, Debug)]
-struct Setting {
+struct JointSetting {
     motor: Option<JointMotor>,
     limit: Option<JointLimits<f64>>,
     softness: SpringCoefficients<f64>,
@@ -257,7 +264,7 @@ struct Setting {
     loss: f64,
 }
 
-impl Setting {
+impl JointSetting {
     fn apply(&self, joint: &mut GenericJoint) {
         let axis = |on: bool| {
             if on {
@@ -280,9 +287,9 @@ impl DofRows {
     ///
     /// A joint of Rapier has one motor, which gives way exactly as a row does, and a limit and dry friction, which
     /// share a softness. The motor stands for a lock, or for a limit that is being run into, or else for the friction.
-    fn setting(&self, free: f64, inverse_inertia: f64, h: f64) -> Setting {
+    fn setting(&self, free: f64, inverse_inertia: f64, h: f64) -> JointSetting {
         let (loss, friction) = self.friction.unwrap_or_default();
-        let two_sided = |(side, limit): (f64, Aim)| Aim {
+        let two_sided = |(side, limit): (f64, RowTarget)| RowTarget {
             velocity: side * limit.velocity,
             ..limit
         };
@@ -309,7 +316,7 @@ impl DofRows {
             JointLimits { min, max, impulse: 0.0 }
         });
         let free_motor = hold.is_none() && push.is_none();
-        Setting {
+        JointSetting {
             motor: match hold {
                 Some(aim) => Some(aim.motor(h, f64::MAX)),
                 None => (free_motor && loss > 0.0).then(|| friction.motor(h, loss)),
@@ -322,7 +329,7 @@ impl DofRows {
 }
 
 /// Sets the motors of a weld, along the axes of the world at the constrained point of body 2.
-fn load_weld(rig: &Rig, model: &Model, s: &State, block: &Block, sets: &mut Sets) {
+fn load_weld(rig: &RapierBodies, model: &Model, s: &State, block: &Block, sets: &mut RapierSets) {
     let h = model.opt.timestep;
     let Some(weld) = weld_points(model, s, block.id) else {
         return;
@@ -333,7 +340,7 @@ fn load_weld(rig: &Rig, model: &Model, s: &State, block: &Block, sets: &mut Sets
     let EqualityKind::Weld { body1, body2, .. } = model.eq_kind[block.id] else {
         return;
     };
-    let aims: [Aim; 6] = std::array::from_fn(|k| Aim::of(s, block.row + k, h));
+    let aims: [RowTarget; 6] = std::array::from_fn(|k| RowTarget::of(s, block.row + k, h));
     let inverse = inverse_rate(&weld);
     let angular = mat_vec(&inverse, [aims[3].velocity, aims[4].velocity, aims[5].velocity]);
     let frame = |b: usize, point: Vec3| {
@@ -351,7 +358,7 @@ fn load_weld(rig: &Rig, model: &Model, s: &State, block: &Block, sets: &mut Sets
                 aims[k]
             } else {
                 let along = row(&inverse, k - 3);
-                Aim {
+                RowTarget {
                     velocity: angular[k - 3],
                     compliance: dot(along, along) * aims[k].compliance,
                 }
@@ -381,7 +388,7 @@ fn inverse_rate(weld: &Weld) -> Mat3 {
 }
 
 /// Writes the forces of welds to the rows of `s.efc`.
-pub(super) fn read_welds(rig: &Rig, model: &Model, s: &mut State, sets: &Sets) {
+pub(super) fn read_welds(rig: &RapierBodies, model: &Model, s: &mut State, sets: &RapierSets) {
     let h = model.opt.timestep;
     for k in 0..s.efc.blocks.len() {
         let block = s.efc.blocks[k];
@@ -397,7 +404,7 @@ pub(super) fn read_welds(rig: &Rig, model: &Model, s: &mut State, sets: &Sets) {
         let Some(joint) = sets.impulse_joints.get(joint.handle) else {
             continue;
         };
-        // Rapier reports what the first body exerts
+        // Rapier reports the impulse that the first body exerts
         let f: [f64; 6] = std::array::from_fn(|k| -joint.data.motors[k].impulse / h);
         let inverse = inverse_rate(&weld);
         let rows = mat_t_vec(&inverse, [f[3], f[4], f[5]]);

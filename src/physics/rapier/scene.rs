@@ -16,9 +16,9 @@ use crate::ContactDispatcher;
 use crate::hull::HullShape;
 use mjcf_sim_model::math::{Quat, Vec3};
 use mjcf_sim_model::model::{GeomType, Model};
+use mjcf_sim_physics::EngineError;
 use mjcf_sim_physics::Quirks;
 use mjcf_sim_physics::collision::{ContactRules, contact_options};
-use mjcf_sim_physics::engine::EngineError;
 use mjcf_sim_physics::state::State;
 
 /// A filter that lets Rapier test exactly the pairs of geoms that may touch.

@@ -4,7 +4,7 @@ use crate::RapierError;
 use mjcf_sim_model::model::{EqualityKind, GeomType, JointType, Model, Wrap};
 use mjcf_sim_physics::topology::Topology;
 
-/// Refuses what Rapier's multibodies cannot represent.
+/// Refuses models that Rapier's multibodies cannot represent.
 pub(super) fn check(model: &Model, topology: &Topology) -> Result<(), RapierError> {
     if let Some(b) = model.body_mocapid.iter().position(Option::is_some) {
         let what = "mocap bodies are not supported";

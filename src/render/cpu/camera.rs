@@ -4,20 +4,21 @@
 use crate::math::{MAT3_ID, Mat3, Vec3, column};
 use crate::mesh::MeshPart;
 use crate::scenery::Scenery;
+use crate::single::single;
 use crate::view::{Poses, View};
 
-pub type V3 = [f32; 3];
+pub type Vec3f = [f32; 3];
 /// Coefficients of x, y, z and the constant.
-pub type Row = [f32; 4];
+pub type AffineRow = [f32; 4];
 
 /// Distance between the two cameras of the reference, m; it draws from the middle between them.
 const EYE_DISTANCE: f64 = 0.068;
 
-pub fn dot(a: V3, b: V3) -> f32 {
+pub fn dot(a: Vec3f, b: Vec3f) -> f32 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
-pub fn cross(a: V3, b: V3) -> V3 {
+pub fn cross(a: Vec3f, b: Vec3f) -> Vec3f {
     [
         a[1] * b[2] - a[2] * b[1],
         a[2] * b[0] - a[0] * b[2],
@@ -25,13 +26,9 @@ pub fn cross(a: V3, b: V3) -> V3 {
     ]
 }
 
-pub fn unit(a: V3) -> V3 {
+pub fn unit(a: Vec3f) -> Vec3f {
     let scale = 1.0 / dot(a, a).sqrt();
     [a[0] * scale, a[1] * scale, a[2] * scale]
-}
-
-pub fn single(v: Vec3) -> V3 {
-    v.map(|x| x as f32)
 }
 
 /// Computes `a b + c` rounded once, like the fused instruction that llvmpipe uses: the product is exact. (But for one
@@ -43,23 +40,23 @@ pub fn fused(a: f32, b: f32, c: f32) -> f32 {
 
 /// A camera with its pose in the world and its projection.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Eye {
-    pub pos: V3,
-    pub right: V3,
-    pub up: V3,
-    pub forward: V3,
+pub struct ViewCamera {
+    pub pos: Vec3f,
+    pub right: Vec3f,
+    pub up: Vec3f,
+    pub forward: Vec3f,
     /// Tangents of half the field of view, horizontal and vertical.
     pub tan: [f32; 2],
     pub near: f32,
     /// Transform from the world to the camera frame; the camera looks along -z.
-    view: [Row; 3],
+    view: [AffineRow; 3],
     /// Focal lengths in half images.
     pub focal: [f32; 2],
     /// Factor and offset of the depth before the division: 1 at the near plane, 0 at the far plane.
     pub depth: [f32; 2],
 }
 
-impl Eye {
+impl ViewCamera {
     pub fn new(scenery: &Scenery, poses: &Poses, view: &View) -> Self {
         let (place, mat) = poses.camera(view.camera).unwrap_or(([0.0; 3], MAT3_ID));
         let mat = &mat;
@@ -116,7 +113,7 @@ impl Eye {
     }
 
     /// Returns a position in the frame of the camera: right, up, forward.
-    pub fn locate(&self, pos: V3) -> V3 {
+    pub fn locate(&self, pos: Vec3f) -> Vec3f {
         let d = [pos[0] - self.pos[0], pos[1] - self.pos[1], pos[2] - self.pos[2]];
         [dot(d, self.right), dot(d, self.up), dot(d, self.forward)]
     }
@@ -127,7 +124,7 @@ impl Eye {
     }
 
     /// Returns the transform from a shape scaled by `size` and placed in the world to the camera frame.
-    pub fn model(&self, pos: Vec3, mat: &Mat3, size: V3) -> [Row; 3] {
+    pub fn model(&self, pos: Vec3, mat: &Mat3, size: Vec3f) -> [AffineRow; 3] {
         let (pos, mat) = (single(pos), mat.map(|v| v as f32));
         self.view.map(|[x, y, z, c]| {
             // the product of view and pose is made once for a shape, so a vertex costs one transform instead of two
@@ -139,7 +136,7 @@ impl Eye {
 
     /// Turns a transform into the camera frame into a projection: rows that give x and y (in half images) and the
     /// depth, all times w, and w.
-    pub fn project(&self, [x, y, z]: [Row; 3]) -> [Row; 4] {
+    pub fn project(&self, [x, y, z]: [AffineRow; 3]) -> [AffineRow; 4] {
         // divided by w, which is -z, this is a constant and a term in 1 / w
         let mut depth = z.map(|v| self.depth[0] * v);
         depth[3] += self.depth[1];
@@ -153,12 +150,12 @@ impl Eye {
 }
 
 /// Returns the transform for one part of a shape: the caps of a capsule are not stretched with its length.
-pub fn part_rows(part: MeshPart, rows: [Row; 3], size: V3) -> [Row; 3] {
+pub fn part_rows(part: MeshPart, rows: [AffineRow; 3], size: Vec3f) -> [AffineRow; 3] {
     // a scaled capsule has caps that stay half balls: they are scaled by the radius in all directions and moved to
     // its ends
     let cap = 0.5 * (size[0] + size[1]);
     let length = size[2];
-    let upper = |[x, y, z, c]: Row| {
+    let upper = |[x, y, z, c]: AffineRow| {
         let z = z * (cap / length);
         [x, y, z, z * ((length - cap) / cap) + c]
     };

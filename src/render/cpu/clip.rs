@@ -1,21 +1,21 @@
 //! Clipping of triangles at the view volume, as Mesa's draw module does it.
 
-use super::camera::{Row, V3, cross, dot};
+use super::camera::{AffineRow, Vec3f, cross, dot};
 use super::plane::Vertex;
 
 /// A vertex in clip coordinates: x, y, depth, w.
-pub type Clip = [f32; 4];
+pub type ClipVertex = [f32; 4];
 
 /// A corner of a clipped triangle: one of its own, or a point on an edge.
 #[derive(Clone, Copy, Debug)]
-pub struct Corner {
-    pub clip: Clip,
-    pub from: Origin,
+pub struct ClipCorner {
+    pub clip: ClipVertex,
+    pub from: CornerOrigin,
 }
 
 /// The origin of a corner.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Origin {
+pub enum CornerOrigin {
     /// A corner of the triangle.
     Own(usize),
     /// A point on an edge: its index among the new points.
@@ -25,9 +25,9 @@ pub enum Origin {
 /// A point that clipping made on an edge: `from + share (to - from)`.
 #[derive(Clone, Copy, Debug)]
 pub struct EdgePoint {
-    pub clip: Clip,
-    pub from: Origin,
-    pub to: Origin,
+    pub clip: ClipVertex,
+    pub from: CornerOrigin,
+    pub to: CornerOrigin,
     pub share: f32,
 }
 
@@ -37,7 +37,7 @@ const MAX_POINTS: usize = 12;
 
 /// A clipped triangle.
 pub struct Polygon {
-    pub corners: [Corner; MAX_CORNERS],
+    pub corners: [ClipCorner; MAX_CORNERS],
     pub count: usize,
     pub points: [EdgePoint; MAX_POINTS],
     pub point_count: usize,
@@ -45,7 +45,7 @@ pub struct Polygon {
 
 /// Returns one bit for each clipping plane that a vertex lies beyond.
 #[inline(always)]
-pub fn outside([x, y, z, w]: Clip) -> u32 {
+pub fn outside([x, y, z, w]: ClipVertex) -> u32 {
     u32::from(x > w)
         | u32::from(x + w < 0.0) << 1
         | u32::from(y > w) << 2
@@ -54,9 +54,9 @@ pub fn outside([x, y, z, w]: Clip) -> u32 {
         | u32::from(z > w) << 5
 }
 
-/// The place of a box in relation to what is in view, however the projection is rounded.
+/// The relation of a box to the view volume, valid however the projection is rounded.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Place {
+pub enum FrustumTest {
     /// All of it lies beyond one clipping plane.
     Outside,
     /// All of it is in view.
@@ -65,9 +65,9 @@ pub enum Place {
     Across,
 }
 
-/// Returns the place of a box that is projected by `rows`.
-pub fn place(rows: &[Row; 4], low: V3, high: V3) -> Place {
-    // far above what rounding does to a sum of four products, relative to the sum of their magnitudes
+/// Tests a box that is projected by `rows` against the view volume.
+pub fn place(rows: &[AffineRow; 4], low: Vec3f, high: Vec3f) -> FrustumTest {
+    // far above the rounding error of a sum of four products, relative to the sum of their magnitudes
     const SAFE: f32 = 1e-5;
     let [x, y, z, w] = rows;
     // positive beyond the plane: a row with its sign, and whether w is subtracted
@@ -92,15 +92,19 @@ pub fn place(rows: &[Row; 4], low: V3, high: V3) -> Place {
             size += (row[k].abs() + w[k].abs()) * low[k].abs().max(high[k].abs());
         }
         if least > SAFE * size {
-            return Place::Outside;
+            return FrustumTest::Outside;
         }
         within &= greatest < -SAFE * size;
     }
-    if within { Place::Inside } else { Place::Across }
+    if within {
+        FrustumTest::Inside
+    } else {
+        FrustumTest::Across
+    }
 }
 
 /// Returns the signed distance from a clipping plane; planes are numbered as the bits of [`outside`].
-fn distance(plane: usize, [x, y, z, w]: Clip) -> f32 {
+fn distance(plane: usize, [x, y, z, w]: ClipVertex) -> f32 {
     match plane {
         0 => w - x,
         1 => x + w,
@@ -112,15 +116,15 @@ fn distance(plane: usize, [x, y, z, w]: Clip) -> f32 {
 }
 
 impl Polygon {
-    pub fn new(triangle: [Clip; 3]) -> Self {
-        let own = |k: usize| Corner {
+    pub fn new(triangle: [ClipVertex; 3]) -> Self {
+        let own = |k: usize| ClipCorner {
             clip: triangle[k],
-            from: Origin::Own(k),
+            from: CornerOrigin::Own(k),
         };
         let none = EdgePoint {
             clip: [0.0; 4],
-            from: Origin::Own(0),
-            to: Origin::Own(0),
+            from: CornerOrigin::Own(0),
+            to: CornerOrigin::Own(0),
             share: 0.0,
         };
         let mut corners = [own(0); MAX_CORNERS];
@@ -133,7 +137,7 @@ impl Polygon {
         }
     }
 
-    /// Cuts off what lies beyond the planes of `sides`; nothing may be left.
+    /// Cuts off the parts beyond the planes of `sides`. The result may be empty.
     pub fn cut(&mut self, sides: u32) {
         for plane in 0..6 {
             if sides & (1 << plane) != 0 {
@@ -143,7 +147,7 @@ impl Polygon {
     }
 
     /// Returns the corners and the new points.
-    pub fn parts(&self) -> (&[Corner], &[EdgePoint]) {
+    pub fn parts(&self) -> (&[ClipCorner], &[EdgePoint]) {
         (&self.corners[..self.count], &self.points[..self.point_count])
     }
 
@@ -170,15 +174,15 @@ impl Polygon {
                 let point = crossing((p, a), (q, b));
                 self.points[self.point_count] = point;
                 self.point_count += 1;
-                self.push(Corner {
+                self.push(ClipCorner {
                     clip: point.clip,
-                    from: Origin::New(self.point_count - 1),
+                    from: CornerOrigin::New(self.point_count - 1),
                 });
             }
         }
     }
 
-    fn push(&mut self, corner: Corner) {
+    fn push(&mut self, corner: ClipCorner) {
         if self.count < MAX_CORNERS {
             self.corners[self.count] = corner;
             self.count += 1;
@@ -187,12 +191,12 @@ impl Polygon {
 }
 
 /// Returns whether a triangle certainly faces away from the camera, so that nothing of it can be seen.
-pub fn faces_away(&[a, b, c]: &[Clip; 3]) -> bool {
+pub fn faces_away(&[a, b, c]: &[ClipVertex; 3]) -> bool {
     // far above single precision: what is nearly edge-on is left to the rasteriser, whose integers decide exactly
     const CLEAR: f32 = 1e-3;
     // the triple product of (x, y, w) tells which side is in front without a division, also where a corner is behind
     // the camera (Olano and Greer, "Triangle Scan Conversion using 2D Homogeneous Coordinates", Graphics Hardware 1997)
-    let flat = |v: Clip| [v[0], v[1], v[3]];
+    let flat = |v: ClipVertex| [v[0], v[1], v[3]];
     let (a, b, c) = (flat(a), flat(b), flat(c));
     let minus = |p: [f32; 3], q: [f32; 3]| [p[0] - q[0], p[1] - q[1], p[2] - q[2]];
     let normal = cross(minus(b, a), minus(c, a));
@@ -201,7 +205,7 @@ pub fn faces_away(&[a, b, c]: &[Clip; 3]) -> bool {
 }
 
 /// Returns the point where an edge crosses a plane, interpolated from the end that is nearer to the plane.
-fn crossing((p, a): (Corner, f32), (q, b): (Corner, f32)) -> EdgePoint {
+fn crossing((p, a): (ClipCorner, f32), (q, b): (ClipCorner, f32)) -> EdgePoint {
     // from the nearer end, as Mesa does it: two triangles that share the edge walk it in opposite directions, and
     // must find the same point
     let difference = b - a;
@@ -229,7 +233,7 @@ pub fn lerp<const N: usize>(from: [f32; N], to: [f32; N], share: f32) -> [f32; N
 }
 
 /// Projects a point that clipping has made.
-pub fn project([x, y, z, w]: Clip, half: [f32; 2]) -> Vertex {
+pub fn project([x, y, z, w]: ClipVertex, half: [f32; 2]) -> Vertex {
     let iw = 1.0 / w;
     Vertex {
         // from -1..1 to pixels in the order of Mesa's viewport transform, since another order falls on another 1/256
@@ -243,8 +247,8 @@ pub fn project([x, y, z, w]: Clip, half: [f32; 2]) -> Vertex {
 
 /// Applies the rows of a projection.
 #[inline(always)]
-pub fn apply(rows: &[Row; 4], [x, y, z]: [f32; 3]) -> Clip {
-    let row = |r: &Row| x * r[0] + y * r[1] + z * r[2] + r[3];
+pub fn apply(rows: &[AffineRow; 4], [x, y, z]: [f32; 3]) -> ClipVertex {
+    let row = |r: &AffineRow| x * r[0] + y * r[1] + z * r[2] + r[3];
     [row(&rows[0]), row(&rows[1]), row(&rows[2]), row(&rows[3])]
 }
 
@@ -254,7 +258,7 @@ mod tests {
 
     #[test]
     fn what_is_left_lies_within() {
-        let cut = |triangle: [Clip; 3], sides: u32| {
+        let cut = |triangle: [ClipVertex; 3], sides: u32| {
             let mut polygon = Polygon::new(triangle);
             polygon.cut(sides);
             polygon
@@ -282,16 +286,16 @@ mod tests {
         ];
         let at = |x: f32| place(&rows, [x, -1.0, -1.0], [x + 2.0, 1.0, 1.0]);
         for (x, expected) in [
-            (-1.0, Place::Inside),
-            (0.5, Place::Across),
-            (3.9, Place::Across),
-            (4.1, Place::Outside),
-            (-5.9, Place::Across),
-            (-6.1, Place::Outside),
+            (-1.0, FrustumTest::Inside),
+            (0.5, FrustumTest::Across),
+            (3.9, FrustumTest::Across),
+            (4.1, FrustumTest::Outside),
+            (-5.9, FrustumTest::Across),
+            (-6.1, FrustumTest::Outside),
         ] {
             assert_eq!(at(x), expected, "{x}");
         }
-        assert_eq!(place(&[[f32::NAN; 4]; 4], [0.0; 3], [1.0; 3]), Place::Across);
+        assert_eq!(place(&[[f32::NAN; 4]; 4], [0.0; 3], [1.0; 3]), FrustumTest::Across);
     }
 
     #[test]

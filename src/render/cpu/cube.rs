@@ -4,34 +4,34 @@ use wide::bytemuck::cast;
 use wide::{f32x4, i32x4, u32x4};
 
 use super::lanes::{at_least, four, integers, three};
-use super::light::Vectors;
-use super::sample::{Coordinates, MipLevels, across, are_settled, channels, floor, gather_squares, upward, whole};
+use super::light::Vec3x4;
+use super::texels::{Coordinates, MipBlend, across, are_settled, channels, floor, gather_squares, upward, whole};
 use crate::texture::{Cube, components};
 
 /// Looks up the pixels of a block that are `wanted`: red, green, blue; 0..255.
 #[inline(always)]
-pub fn colours(cube: &Cube, at: &Coordinates, wanted: [bool; 4]) -> Vectors {
+pub fn colours(cube: &Cube, at: &Coordinates, wanted: [bool; 4]) -> Vec3x4 {
     let axes = Axes::new(at);
     let Some(side) = axes.common() else {
-        return Points::apart(cube, axes.sides(), at).mixed(cube, wanted);
+        return CubePoints::apart(cube, axes.sides(), at).mixed(cube, wanted);
     };
-    let points = Points::on(cube, side, at);
+    let points = CubePoints::on(cube, side, at);
     if !points.detail.same() {
         return points.mixed(cube, wanted);
     }
     points.colours(cube, wanted)
 }
 
-/// The points of a cube map at which the pixels of a block look.
+/// The points of a cube map that the pixels of a block sample.
 #[derive(Clone, Copy)]
-struct Points {
+struct CubePoints {
     side: [u8; 4],
     u: f32x4,
     v: f32x4,
-    detail: MipLevels,
+    detail: MipBlend,
 }
 
-impl Points {
+impl CubePoints {
     /// Locates pixels of a block across several faces: each as if the whole block were on its face.
     #[cold]
     fn apart(cube: &Cube, side: [u8; 4], at: &Coordinates) -> Self {
@@ -78,22 +78,22 @@ impl Points {
             side: [side; 4],
             u: sc * half + 0.5,
             v: tc * half + 0.5,
-            detail: MipLevels::new(right.simd_gt(up).select(right, up), cube.faces[0].len()),
+            detail: MipBlend::new(right.simd_gt(up).select(right, up), cube.faces[0].len()),
         }
     }
 
     /// Looks up pixels that lie on one side and in one level.
     #[inline(always)]
-    fn colours(&self, cube: &Cube, wanted: [bool; 4]) -> Vectors {
+    fn colours(&self, cube: &Cube, wanted: [bool; 4]) -> Vec3x4 {
         let face = &cube.faces[usize::from(self.side[0])];
         let level = self.detail.level.to_array()[0] as usize;
         let image = &face[level];
         // copies, which keep what they are made of in registers on the other way
-        let beyond = |level: usize, spots: Spots| {
+        let beyond = |level: usize, spots: CubeTexels| {
             let points = *self;
             points.beyond(cube, [level; 4], &spots, wanted)
         };
-        let spots = Spots::new(self.u, self.v, f32x4::splat(whole(image.width)));
+        let spots = CubeTexels::new(self.u, self.v, f32x4::splat(whole(image.width)));
         let mut colours = if spots.inside == 15 {
             let square = gather_squares(image, spots.first.to_array());
             // around a settled texel there is no other colour, in this level or the next: nothing to lerp
@@ -107,7 +107,7 @@ impl Points {
         if self.detail.blends() {
             let level = (level + 1).min(face.len() - 1);
             let image = &face[level];
-            let spots = Spots::new(self.u, self.v, f32x4::splat(whole(image.width)));
+            let spots = CubeTexels::new(self.u, self.v, f32x4::splat(whole(image.width)));
             let next = if spots.inside == 15 {
                 spots.between(gather_squares(image, spots.first.to_array()).map(channels))
             } else {
@@ -120,11 +120,11 @@ impl Points {
 
     /// Looks up pixels that lie on several sides or in several levels.
     #[inline(never)]
-    fn mixed(self, cube: &Cube, wanted: [bool; 4]) -> Vectors {
+    fn mixed(self, cube: &Cube, wanted: [bool; 4]) -> Vec3x4 {
         let last = cube.faces[0].len() - 1;
         let at = |level: [usize; 4]| {
             let size = f32x4::new(four(|k| whole(cube.faces[0][level[k]].width)));
-            self.beyond(cube, level, &Spots::new(self.u, self.v, size), wanted)
+            self.beyond(cube, level, &CubeTexels::new(self.u, self.v, size), wanted)
         };
         let level = self.detail.level.to_array().map(|level| level as usize);
         let mut colours = at(level);
@@ -137,7 +137,7 @@ impl Points {
 
     /// Lerps to the colours of the next mip level.
     #[inline(always)]
-    fn blend(&self, colours: &mut Vectors, next: &Vectors) {
+    fn blend(&self, colours: &mut Vec3x4, next: &Vec3x4) {
         for k in 0..3 {
             colours[k] += self.detail.blend * (next[k] - colours[k]);
         }
@@ -145,7 +145,7 @@ impl Points {
 
     /// Looks up bilinearly in one mip level for each pixel, across the edges of the cube where needed.
     #[inline(never)]
-    fn beyond(&self, cube: &Cube, level: [usize; 4], spots: &Spots, wanted: [bool; 4]) -> Vectors {
+    fn beyond(&self, cube: &Cube, level: [usize; 4], spots: &CubeTexels, wanted: [bool; 4]) -> Vec3x4 {
         let (left, top) = (spots.left.to_array(), spots.top.to_array());
         let mut corners = [[0; 4]; 4];
         for k in (0..4).filter(|&k| wanted[k]) {
@@ -158,9 +158,9 @@ impl Points {
     }
 }
 
-/// The places in one mip level for each pixel at which the pixels of a block look.
+/// The texels of one mip level that the pixels of a block sample.
 #[derive(Clone, Copy)]
-struct Spots {
+struct CubeTexels {
     /// Column of the texel before; -1 or the last one if the texel after lies beyond the edge.
     left: f32x4,
     /// Row of the texel before, likewise.
@@ -174,7 +174,7 @@ struct Spots {
     inside: u32,
 }
 
-impl Spots {
+impl CubeTexels {
     #[inline(always)]
     fn new(u: f32x4, v: f32x4, size: f32x4) -> Self {
         let (x, y) = (u * size - 0.5, v * size - 0.5);
@@ -199,7 +199,7 @@ impl Spots {
 
     /// Lerps between four texels for each pixel.
     #[inline(always)]
-    fn between(&self, [a, b, c, d]: [Vectors; 4]) -> Vectors {
+    fn between(&self, [a, b, c, d]: [Vec3x4; 4]) -> Vec3x4 {
         three(|k| {
             let (upper, lower) = (a[k] + self.across * (b[k] - a[k]), c[k] + self.across * (d[k] - c[k]));
             upper + self.down * (lower - upper)

@@ -5,7 +5,7 @@
 
 use wide::f32x4;
 
-use super::camera::{Eye, V3, dot};
+use super::camera::{Vec3f, ViewCamera, dot};
 use super::frame::PlacedDrawable;
 use crate::drawable::{Drawable, Shape};
 use crate::mesh::{Band, MeshPart};
@@ -16,30 +16,30 @@ const ROUNDING: f32 = 1e-5;
 /// Bound on the areas of faces of unit shapes.
 const AREA: f32 = 0.26;
 
-/// The camera as a drawable sees it.
-pub struct Facing {
+/// The camera in the frame of a drawable.
+pub struct LocalCamera {
     /// Its position in the frame of the drawable, m.
-    eye: V3,
+    eye: Vec3f,
     /// Size of the drawable, m.
-    size: V3,
+    size: Vec3f,
     /// Pixels in a metre across, where the drawable is nearest.
     nearest: f32,
     /// Area in pixels of a square metre, seen from the front at a distance of 1 m, over the cube of the greatest distance.
     area: f32,
-    /// Bound on what rounding adds to the difference between two vertices, pixels: they move to 1/256 pixels.
+    /// Bound on the rounding error of the difference between two vertices, pixels: they are rounded to 1/256 pixels.
     moved: f32,
 }
 
 /// The camera in the unit shape of one part of a drawable.
-pub struct PartFacing {
-    eye: V3,
+pub struct PartCamera {
+    eye: Vec3f,
     /// Least product of the distance from a plane and the area of a face at which the face may show its front.
     least: f32,
 }
 
-impl Facing {
+impl LocalCamera {
     /// Locates the camera; `None` where the drawable is flat or a mesh of the model, or comes so near that it may be cut.
-    pub fn new(drawable: &Drawable, draw: &PlacedDrawable, eye: &Eye, image: [usize; 2]) -> Option<Self> {
+    pub fn new(drawable: &Drawable, draw: &PlacedDrawable, eye: &ViewCamera, image: [usize; 2]) -> Option<Self> {
         let d = [
             eye.pos[0] - draw.pos[0],
             eye.pos[1] - draw.pos[1],
@@ -69,7 +69,7 @@ impl Facing {
     }
 
     /// Locates the camera in the unit shape of a band.
-    pub fn of(&self, band: &Band) -> PartFacing {
+    pub fn of(&self, band: &Band) -> PartCamera {
         let [width, depth, length] = self.size;
         let cap = 0.5 * (width + depth);
         let (stretch, shift) = match band.part {
@@ -86,14 +86,14 @@ impl Facing {
         // moving its corners changes the area of a parallelogram by no more than this
         let change = self.moved * (4.0 * longest + 2.0 * self.moved);
         let distance = eye[0].abs() + eye[1].abs() + eye[2].abs() + 2.0;
-        PartFacing {
+        PartCamera {
             eye,
             least: -change / (self.area * width * depth * stretch) - ROUNDING * AREA * distance,
         }
     }
 }
 
-impl PartFacing {
+impl PartCamera {
     /// Returns one bit for each quadrilateral of a patch that may be a front face.
     #[inline(always)]
     pub fn fronts(&self, patch: &Patch) -> u8 {

@@ -4,9 +4,9 @@ use wide::bytemuck::cast;
 use wide::{f32x4, i32x4, u16x8, u32x4};
 
 use super::lanes::{at_least, integers};
-use super::light::Vectors;
-use super::sample::{Coordinates, MipLevels, across, are_settled, channels, floor, gather, upward};
-use crate::texture::{Face, Level};
+use super::light::Vec3x4;
+use super::texels::{Coordinates, MipBlend, across, are_settled, channels, floor, gather, upward};
+use crate::texture::{MipChain, MipLevel};
 
 /// Weights are parts of this.
 const ONE: u16 = 256;
@@ -15,7 +15,7 @@ const ONE: u16 = 256;
 type Channels = [u16x8; 2];
 
 /// Looks up the pixels of a block: red, green, blue; 0..255.
-pub fn colours(face: &Face, [s, t, _]: &Coordinates) -> Vectors {
+pub fn colours(face: &MipChain, [s, t, _]: &Coordinates) -> Vec3x4 {
     let (width, height) = (face[0].width as f32, face[0].height as f32);
     let length = |change: fn(f32x4) -> f32x4| {
         let (s, t) = (change(*s) * width, change(*t) * height);
@@ -23,10 +23,10 @@ pub fn colours(face: &Face, [s, t, _]: &Coordinates) -> Vectors {
         (s * s + t * t).to_array()[0]
     };
     let squared = length(across).max(length(upward));
-    let detail = MipLevels::new(f32x4::splat(squared), face.len());
+    let detail = MipBlend::new(f32x4::splat(squared), face.len());
     // all lanes are the same here
     let (level, share) = (detail.level.to_array()[0] as usize, detail.blend.to_array()[0]);
-    let spots = Spots::new(&face[level], *s, *t);
+    let spots = FlatTexels::new(&face[level], *s, *t);
     let first = gather(spots.level, spots.places(spots.y.before, spots.x.before));
     // a texel around which there is one colour, here and in the next level, needs neither neighbours nor blending
     if face[level].has_one_colour() || are_settled(first) {
@@ -34,7 +34,7 @@ pub fn colours(face: &Face, [s, t, _]: &Coordinates) -> Vectors {
     }
     let mut out = spots.colours(first);
     if share > 0.0 {
-        let spots = Spots::new(&face[level + 1], *s, *t);
+        let spots = FlatTexels::new(&face[level + 1], *s, *t);
         let first = gather(spots.level, spots.places(spots.y.before, spots.x.before));
         out = lerp(out, spots.colours(first), u16x8::splat((share * f32::from(ONE)) as u16));
     }
@@ -98,16 +98,16 @@ impl RepeatedAxis {
     }
 }
 
-/// The places in a level at which the pixels of a block look.
-struct Spots<'a> {
-    level: &'a Level,
+/// The texels of one mip level that the pixels of a block sample.
+struct FlatTexels<'a> {
+    level: &'a MipLevel,
     x: RepeatedAxis,
     y: RepeatedAxis,
 }
 
-impl<'a> Spots<'a> {
+impl<'a> FlatTexels<'a> {
     #[inline(always)]
-    fn new(level: &'a Level, s: f32x4, t: f32x4) -> Self {
+    fn new(level: &'a MipLevel, s: f32x4, t: f32x4) -> Self {
         Self {
             level,
             x: RepeatedAxis::new(s, level.width as f32),

@@ -1,24 +1,25 @@
-//! The geometry of an image: frustum culling, the order of drawing, occlusion by what is nearer.
+//! The geometry of an image: frustum culling, the order of drawing, occlusion.
 
 use std::ops::Range;
 
-use super::camera::{Eye, Row, V3, dot, single};
-use super::group::Waiting;
+use super::camera::{AffineRow, Vec3f, ViewCamera, dot};
+use super::group::TriangleGroup;
 use super::plane::{Basis, Vertex};
-use super::target::{Target, Triangle};
+use super::target::{Triangle, VisibilityBuffer};
 use crate::RenderError;
 use crate::drawable::{BEHIND, Drawable, OPAQUE, Shape};
+use crate::posed_skins::PosedSkins;
 use crate::scenery::Scenery;
-use crate::skin::PosedSkins;
+use crate::single::single;
 use crate::view::{Poses, View};
 
 /// The geometry of an image.
 #[derive(Debug, Default)]
 pub struct Frame {
     /// The visibility buffer at four samples of each pixel, for colours.
-    pub colour: Target,
+    pub colour: VisibilityBuffer,
     /// The visibility buffer at the centre of each pixel, for depth and segmentation.
-    pub centre: Target,
+    pub centre: VisibilityBuffer,
     /// Which of the two are drawn to.
     pub targets: Targets,
     /// Width and height, pixels.
@@ -37,7 +38,7 @@ pub struct Frame {
     /// For each group of vertices of the drawable being drawn, whether a quadrilateral of these has one.
     pub needed: Vec<bool>,
     /// Triangles of the drawable being drawn that are still to be rasterised.
-    pub waiting: Waiting,
+    pub waiting: TriangleGroup,
     /// Vertices made by clipping.
     pub points: Vec<ClipPoint>,
     /// Everything that is drawn, indexed like the drawables of the scenery.
@@ -46,7 +47,7 @@ pub struct Frame {
     opaque: Vec<(f32, u32)>,
     /// Distance and index of the transparent drawables in view.
     transparent: Vec<(f32, u32)>,
-    /// Indices of what is drawn.
+    /// Indices of the drawables that are drawn.
     pub placed: Vec<u32>,
     /// Range of fragments of each transparent drawable, the nearest drawable first.
     pub layers: Vec<Range<usize>>,
@@ -55,10 +56,10 @@ pub struct Frame {
 /// A drawable with its pose in the world.
 #[derive(Clone, Copy, Debug)]
 pub struct PlacedDrawable {
-    pub pos: V3,
+    pub pos: Vec3f,
     pub mat: [f32; 9],
     /// Transform from the unit shape to the camera frame.
-    pub rows: [Row; 3],
+    pub rows: [AffineRow; 3],
     /// Index of its first vertex in the frame.
     pub base: usize,
     /// Index after its vertices, where those begin that clipping made of it.
@@ -105,16 +106,16 @@ pub struct Targets {
 }
 
 impl Frame {
-    /// Begins an image: finds what is in view.
+    /// Begins an image: finds the drawables in view.
     pub fn begin(
         &mut self,
         scenery: &Scenery,
         poses: &Poses,
         view: &View,
         targets: Targets,
-    ) -> Result<Eye, RenderError> {
+    ) -> Result<ViewCamera, RenderError> {
         scenery.check(poses, view)?;
-        let eye = Eye::new(scenery, poses, view);
+        let eye = ViewCamera::new(scenery, poses, view);
         self.clear(scenery, view, targets);
         self.skins.update(scenery, poses);
         for (i, drawable) in scenery.drawables.iter().enumerate() {
@@ -139,8 +140,8 @@ impl Frame {
         Ok(eye)
     }
 
-    /// Finds what is seen of opaque drawables at each sample.
-    pub fn draw_opaque(&mut self, scenery: &Scenery, poses: &Poses, eye: &Eye) {
+    /// Finds the opaque triangle that each sample shows.
+    pub fn draw_opaque(&mut self, scenery: &Scenery, poses: &Poses, eye: &ViewCamera) {
         for k in 0..self.opaque.len() {
             self.place(scenery, poses, eye, self.opaque[k].1 as usize, false);
         }
@@ -148,7 +149,7 @@ impl Frame {
 
     /// Adds transparent drawables: their fragments for colours and, if `hiding`, to the centres of pixels as if they were
     /// opaque.
-    pub fn draw_transparent(&mut self, scenery: &Scenery, poses: &Poses, eye: &Eye, hiding: bool) {
+    pub fn draw_transparent(&mut self, scenery: &Scenery, poses: &Poses, eye: &ViewCamera, hiding: bool) {
         self.targets.centre &= hiding;
         if self.targets == Targets::default() {
             return;
@@ -182,7 +183,7 @@ impl Frame {
     }
 
     /// Adds a drawable, which is `ahead` of the camera, to the list of opaque or transparent ones.
-    fn arrange(&mut self, drawable: &Drawable, eye: &Eye, index: usize, pos: V3, mat: [f32; 9], ahead: f32) {
+    fn arrange(&mut self, drawable: &Drawable, eye: &ViewCamera, index: usize, pos: Vec3f, mat: [f32; 9], ahead: f32) {
         let plane = drawable.shape == Shape::Plane;
         let d = [eye.pos[0] - pos[0], eye.pos[1] - pos[1], eye.pos[2] - pos[2]];
         let draw = &mut self.draws[index];
@@ -205,7 +206,7 @@ impl Frame {
     }
 
     /// Draws a drawable unless it is hidden.
-    fn place(&mut self, scenery: &Scenery, poses: &Poses, eye: &Eye, index: usize, transparent: bool) {
+    fn place(&mut self, scenery: &Scenery, poses: &Poses, eye: &ViewCamera, index: usize, transparent: bool) {
         let Some((drawable, pos, mat)) = scenery.drawables[index].placed(poses) else {
             return;
         };
@@ -253,8 +254,8 @@ impl Frame {
         }
     }
 
-    /// Returns whether what has been drawn occludes the bounding sphere of a drawable.
-    fn hidden(&self, drawable: &Drawable, eye: &Eye, pos: V3) -> bool {
+    /// Returns whether drawables drawn so far occlude the bounding sphere of a drawable.
+    fn hidden(&self, drawable: &Drawable, eye: &ViewCamera, pos: Vec3f) -> bool {
         let [x, y, z] = eye.locate(pos);
         let r = drawable.radius;
         // part of it is before the near plane, where the tangents below have no meaning
@@ -266,7 +267,7 @@ impl Frame {
             // a sphere is not symmetric about its centre in perspective
             let (d, root) = (z * z - r * r, r * (v * v + z * z - r * r).sqrt());
             let place = |t: f32| (t / tan * 0.5 + 0.5) * pixels as f32;
-            // one pixel more on either side for what rounding does to vertices
+            // one pixel more on either side, because vertices are rounded
             let low = place((v * z - root) / d).floor() - 1.0;
             let high = place((v * z + root) / d).ceil() + 1.0;
             low.clamp(0.0, pixels as f32) as usize..high.clamp(0.0, pixels as f32) as usize
@@ -276,7 +277,7 @@ impl Frame {
         // steep triangles are off by some rounding
         const SAFE: f32 = 1.001;
         let nearest = eye.depth_at(z - r) * SAFE;
-        let hides = |wanted: bool, target: &Target| !wanted || target.hides(x.clone(), y.clone(), nearest);
+        let hides = |wanted: bool, target: &VisibilityBuffer| !wanted || target.hides(x.clone(), y.clone(), nearest);
         x.start >= x.end
             || y.start >= y.end
             || (hides(self.targets.colour, &self.colour) && hides(self.targets.centre, &self.centre))

@@ -4,17 +4,16 @@ use wide::{f32x4, i32x4};
 
 use super::lanes::{four, integers, three};
 use super::plane::{Plane, Vertex};
-use super::project::steps;
-use super::raster::{Depth, Edges, MEDIUM};
+use super::raster::{DepthFunction, Edges, MEDIUM, to_fixed_point};
 use super::sampling::{GRAIN, Sampling};
-use super::small::{PIXEL, Spots};
+use super::small::{CoveredSamples, PIXEL};
 
 /// Number of triangles that are set up at a time.
 pub const GROUP: usize = 4;
 
 /// Triangles that wait to be set up together.
 #[derive(Debug, Default)]
-pub struct Waiting {
+pub struct TriangleGroup {
     /// The projected corners of each triangle.
     corners: [[Vertex; GROUP]; 3],
     /// Vertices in the frame.
@@ -23,16 +22,16 @@ pub struct Waiting {
 }
 
 /// The way in which a triangle is drawn.
-pub enum Drawn {
+pub enum DrawMethod {
     /// It is smaller than a pixel.
-    Spots(Spots, Depth),
+    Spots(CoveredSamples, DepthFunction),
     /// It fits into a few pixels: its edges, and the first and the last pixel in each direction.
-    Medium(Edges, [[i32; 2]; 2], Depth),
+    Medium(Edges, [[i32; 2]; 2], DepthFunction),
     /// It is larger, and still to be set up.
     Large,
 }
 
-impl Waiting {
+impl TriangleGroup {
     /// Adds a triangle; returns whether the group is complete.
     #[inline(always)]
     pub fn add(&mut self, own: [usize; 3], vertices: &[Vertex]) -> bool {
@@ -53,7 +52,7 @@ impl Waiting {
     /// Passes on the triangles in the order in which they came, but for those that certainly cover no sample of an image of this
     /// size.
     #[inline(always)]
-    pub fn each<S: Sampling>(&self, size: [usize; 2], mut each: impl FnMut([usize; 3], Drawn)) {
+    pub fn each<S: Sampling>(&self, size: [usize; 2], mut each: impl FnMut([usize; 3], DrawMethod)) {
         if self.count == 0 {
             return;
         }
@@ -64,7 +63,10 @@ impl Waiting {
             }))
         });
         // rounded once more, which costs less than to collect what was rounded
-        let (x, y) = (three(|k| steps(corners[k][0])), three(|k| steps(corners[k][1])));
+        let (x, y) = (
+            three(|k| to_fixed_point(corners[k][0])),
+            three(|k| to_fixed_point(corners[k][1])),
+        );
         let extent = [Extent::new(&x), Extent::new(&y)];
         let within = |limit: i32| {
             let limit = f32x4::splat(limit as f32);
@@ -86,15 +88,15 @@ impl Waiting {
             let own = self.vertices[at];
             if small >> at & 1 == 1 {
                 let bit = |k: usize| (covered[k] >> at & 1) << k;
-                let spots = Spots {
+                let spots = CoveredSamples {
                     corner: [corner[0][at], corner[1][at]],
                     samples: bit(0) | bit(1) | bit(2) | bit(3),
                 };
                 if spots.samples != 0 {
-                    each(own, Drawn::Spots(spots, depth.of::<S>(at)));
+                    each(own, DrawMethod::Spots(spots, depth.of::<S>(at)));
                 }
             } else if medium >> at & 1 == 0 {
-                each(own, Drawn::Large);
+                each(own, DrawMethod::Large);
             } else if turned >> at & 1 == 1 {
                 let range = |k: usize| {
                     let [first, last] = pixels[k];
@@ -103,7 +105,7 @@ impl Waiting {
                 let (x, y) = (range(0), range(1));
                 if x[0] <= x[1] && y[0] <= y[1] {
                     let edges = Edges::new::<S>(three(|k| three(|i| lanes[k][i][at])));
-                    each(own, Drawn::Medium(edges, [x, y], depth.of::<S>(at)));
+                    each(own, DrawMethod::Medium(edges, [x, y], depth.of::<S>(at)));
                 }
             }
         }
@@ -236,12 +238,12 @@ impl LaneDepth {
     }
 
     #[inline(always)]
-    fn of<S: Sampling>(&self, k: usize) -> Depth {
+    fn of<S: Sampling>(&self, k: usize) -> DepthFunction {
         let plane = Plane {
             at: self.at[k],
             dx: self.dx[k],
             dy: self.dy[k],
         };
-        Depth::of::<S>(plane, self.gentle >> k & 1 == 1)
+        DepthFunction::of::<S>(plane, self.gentle >> k & 1 == 1)
     }
 }

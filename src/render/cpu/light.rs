@@ -2,13 +2,14 @@
 
 use wide::f32x4;
 
-use super::camera::{Eye, V3, single, unit};
+use super::camera::{Vec3f, ViewCamera, unit};
 use super::frame::PlacedDrawable;
 use super::lanes::{four, three};
 use crate::drawable::Drawable;
 use crate::math::{Vec3, add, mat_vec, sub};
 use crate::mesh::MeshPart;
-use crate::scenery::{Aim, LightSource, Scenery};
+use crate::scenery::{LightAim, LightSource, Scenery};
+use crate::single::single;
 use crate::view::Poses;
 
 /// Weakest highlight that is computed.
@@ -19,13 +20,13 @@ const LN_FAINT: f32 = -9.210_340_5;
 #[derive(Clone, Copy, Debug)]
 pub struct PlacedLight {
     /// Position in the world, m; `None` for directional light.
-    pub pos: Option<V3>,
+    pub pos: Option<Vec3f>,
     /// Unit direction in which it shines.
-    pub dir: V3,
-    ambient: V3,
-    diffuse: V3,
-    specular: V3,
-    attenuation: V3,
+    pub dir: Vec3f,
+    ambient: Vec3f,
+    diffuse: Vec3f,
+    specular: Vec3f,
+    attenuation: Vec3f,
     cos_cutoff: f32,
     exponent: f32,
     /// Whether it produces highlights.
@@ -33,7 +34,7 @@ pub struct PlacedLight {
 }
 
 /// Places the lights of a scene, the headlight first.
-pub fn place(scenery: &Scenery, poses: &Poses, eye: &Eye, out: &mut Vec<PlacedLight>) {
+pub fn place(scenery: &Scenery, poses: &Poses, eye: &ViewCamera, out: &mut Vec<PlacedLight>) {
     out.clear();
     if let Some([ambient, diffuse, specular]) = scenery.headlight {
         out.push(PlacedLight {
@@ -69,38 +70,38 @@ fn pose(light: &LightSource, poses: &Poses) -> (Option<Vec3>, Vec3) {
     let (xpos, xmat) = (poses.xpos[light.body], &poses.xmat[light.body]);
     let in_world = |pos| add(xpos, mat_vec(xmat, pos));
     let (pos, dir) = match light.aim {
-        Aim::Body => return (light.pos.map(in_world), mat_vec(xmat, light.dir)),
-        Aim::Track { offset, dir } => (add(xpos, offset), dir),
-        Aim::TrackCom { offset, dir } => (add(poses.subtree_com[light.body], offset), dir),
-        Aim::Target { body, pos } => (in_world(pos), sub(poses.xpos[body], in_world(pos))),
-        Aim::TargetCom { body, pos } => (in_world(pos), sub(poses.subtree_com[body], in_world(pos))),
+        LightAim::Body => return (light.pos.map(in_world), mat_vec(xmat, light.dir)),
+        LightAim::Track { offset, dir } => (add(xpos, offset), dir),
+        LightAim::TrackCom { offset, dir } => (add(poses.subtree_com[light.body], offset), dir),
+        LightAim::Target { body, pos } => (in_world(pos), sub(poses.xpos[body], in_world(pos))),
+        LightAim::TargetCom { body, pos } => (in_world(pos), sub(poses.subtree_com[body], in_world(pos))),
     };
     (light.pos.map(|_| pos), crate::math::unit(dir).0)
 }
 
 /// Four vectors, by component.
-pub type Vectors = [f32x4; 3];
+pub type Vec3x4 = [f32x4; 3];
 
 /// Four vertices of a unit shape: parts, places, normals.
-pub struct Corners {
+pub struct VertexGroup {
     pub part: [MeshPart; 4],
-    pub at: Vectors,
-    pub normal: Vectors,
+    pub at: Vec3x4,
+    pub normal: Vec3x4,
 }
 
 #[inline(always)]
-fn dots(a: &Vectors, b: &Vectors) -> f32x4 {
+fn dots(a: &Vec3x4, b: &Vec3x4) -> f32x4 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
 #[inline(always)]
-fn units(a: &Vectors) -> Vectors {
+fn units(a: &Vec3x4) -> Vec3x4 {
     let scale = f32x4::ONE / dots(a, a).sqrt();
     three(|k| a[k] * scale)
 }
 
 #[inline(always)]
-fn splat(v: V3) -> Vectors {
+fn splat(v: Vec3f) -> Vec3x4 {
     three(|k| f32x4::splat(v[k]))
 }
 
@@ -109,9 +110,9 @@ pub fn vertices(
     lights: &[PlacedLight],
     drawable: &Drawable,
     draw: &PlacedDrawable,
-    eye: V3,
-    corners: &Corners,
-) -> Vectors {
+    eye: Vec3f,
+    corners: &VertexGroup,
+) -> Vec3x4 {
     let size = drawable.size;
     // as in the projection: the caps of a capsule are scaled by its radius, not by its length
     let cap = 0.5 * (size[0] + size[1]);
@@ -122,7 +123,7 @@ pub fn vertices(
     });
     let (stretch, shift) = (f32x4::new(four(|k| ends[k].0)), f32x4::new(four(|k| ends[k].1)));
     let m = draw.mat.map(f32x4::splat);
-    let rotate = |v: &Vectors| three(|k| m[3 * k] * v[0] + m[3 * k + 1] * v[1] + m[3 * k + 2] * v[2]);
+    let rotate = |v: &Vec3x4| three(|k| m[3 * k] * v[0] + m[3 * k + 1] * v[1] + m[3 * k + 2] * v[2]);
     let at = &corners.at;
     let p = rotate(&[at[0] * size[0], at[1] * size[1], at[2] * stretch + shift]);
     let p = three(|k| p[k] + draw.pos[k]);
@@ -144,7 +145,7 @@ pub fn vertices(
 
 /// Computes the colours (0..1) of points with the unit normals `n`; `to_eye` are the unit directions to the camera.
 #[inline(always)]
-fn shade(lights: &[PlacedLight], drawable: &Drawable, p: &Vectors, n: &Vectors, to_eye: &Vectors) -> Vectors {
+fn shade(lights: &[PlacedLight], drawable: &Drawable, p: &Vec3x4, n: &Vec3x4, to_eye: &Vec3x4) -> Vec3x4 {
     // a scene without lights is not quite dark
     let glow = if lights.is_empty() { 0.3 } else { 0.0 } + drawable.emission;
     let (mut diffuse, mut highlights) = ([f32x4::splat(glow); 3], [f32x4::ZERO; 3]);
@@ -242,7 +243,7 @@ impl PlacedLight {
     /// Returns the unit directions from points to the light, and how much of the light's intensity arrives there
     /// (0..1).
     #[inline(always)]
-    fn reach(&self, p: &Vectors) -> (Vectors, f32x4) {
+    fn reach(&self, p: &Vec3x4) -> (Vec3x4, f32x4) {
         // a directional light has no distance to fade with
         let Some(pos) = self.pos else {
             return (splat(self.dir.map(|v| -v)), f32x4::ONE);
@@ -295,7 +296,7 @@ mod tests {
     const PLACE: Vec3 = [1.316_125_384_952_760_5, 0.2, 1.008_046_178_500_938_7];
 
     /// Returns the position and the direction of a light of body 1 whose target is body 2.
-    fn placed(aim: Aim) -> (Option<Vec3>, Vec3) {
+    fn placed(aim: LightAim) -> (Option<Vec3>, Vec3) {
         let half = std::f64::consts::FRAC_1_SQRT_2;
         let (cos, sin) = (0.340_263_920_455_576_85, 0.940_329_976_357_342_7);
         let identity = crate::math::MAT3_ID;
@@ -341,7 +342,7 @@ mod tests {
         let pos = [0.1, 0.2, 0.3];
         for (aim, at, dir) in [
             (
-                Aim::Body,
+                LightAim::Body,
                 PLACE,
                 [
                     -0.664_913_702_835_263_1,
@@ -350,7 +351,7 @@ mod tests {
                 ],
             ),
             (
-                Aim::Track {
+                LightAim::Track {
                     offset: POS0,
                     dir: DIR0,
                 },
@@ -358,7 +359,7 @@ mod tests {
                 DIR0,
             ),
             (
-                Aim::TrackCom {
+                LightAim::TrackCom {
                     offset: COM0,
                     dir: DIR0,
                 },
@@ -366,7 +367,7 @@ mod tests {
                 DIR0,
             ),
             (
-                Aim::Target { body: 2, pos },
+                LightAim::Target { body: 2, pos },
                 PLACE,
                 [
                     -0.569_441_529_864_488_7,
@@ -375,7 +376,7 @@ mod tests {
                 ],
             ),
             (
-                Aim::TargetCom { body: 2, pos },
+                LightAim::TargetCom { body: 2, pos },
                 PLACE,
                 [
                     -0.515_754_704_551_417_5,

@@ -15,24 +15,27 @@ mod frame;
 mod group;
 mod lanes;
 mod light;
+mod pixels;
 mod plane;
 mod project;
 mod raster;
 mod sample;
 mod sampling;
-mod seen;
 mod shade;
 mod sky;
 mod small;
 mod target;
+mod texels;
 mod triangles;
+mod visible;
 
 #[cfg(feature = "wgpu")]
-pub(super) use camera::{Eye, V3, dot, single};
+pub(super) use camera::{Vec3f, ViewCamera, dot};
 use frame::{Frame, Targets};
 #[cfg(feature = "wgpu")]
 pub(super) use light::{PlacedLight, place as place_lights};
-use shade::{Pixels, Shader};
+use pixels::Pixels;
+use shade::Shader;
 
 use crate::RenderError;
 use crate::drawable::Element;

@@ -4,21 +4,21 @@ use std::ops::Range;
 
 use wide::f32x4;
 
-use super::camera::{Eye, Row, fused, part_rows};
-use super::clip::{self, Place};
-use super::facing::Facing;
+use super::camera::{AffineRow, ViewCamera, fused, part_rows};
+use super::clip::{self, FrustumTest};
+use super::facing::LocalCamera;
 use super::frame::Frame;
-use super::lanes::at_least;
 use super::plane::Vertex;
-use super::raster::LIMIT;
+use super::raster::to_fixed_point;
 use crate::drawable::Drawable;
-use crate::mesh::{Band, LANES, Mesh};
+use crate::mesh::{Band, Mesh};
 use crate::patch::ALL;
 use crate::scenery::Scenery;
+use crate::strip::LANES;
 
 impl Frame {
-    /// Projects and draws a drawable, of which the index is given, too.
-    pub fn add(&mut self, scenery: &Scenery, drawable: &Drawable, eye: &Eye, index: usize) {
+    /// Projects and draws the drawable with an index.
+    pub fn add(&mut self, scenery: &Scenery, drawable: &Drawable, eye: &ViewCamera, index: usize) {
         let skins = std::mem::take(&mut self.skins);
         let mesh = skins.mesh(scenery, drawable);
         let draw = self.draws[index];
@@ -28,14 +28,14 @@ impl Frame {
         self.sides.resize(draw.end, 0);
         self.fronts.clear();
         self.fronts.resize(mesh.patches.len(), ALL);
-        let facing = Facing::new(drawable, &draw, eye, self.size);
+        let facing = LocalCamera::new(drawable, &draw, eye, self.size);
         for band in &mesh.bands {
             let rows = eye.project(part_rows(band.part, draw.rows, drawable.size));
             // a band that is wholly in view needs no clip codes, and a band outside needs no vertices: most of a scene
             // is one or the other
             match (clip::place(&rows, band.low, band.high), &facing) {
-                (Place::Outside, _) => {}
-                (Place::Inside, Some(facing)) => {
+                (FrustumTest::Outside, _) => {}
+                (FrustumTest::Inside, Some(facing)) => {
                     self.find_fronts(mesh, band, facing);
                     for group in band.vertices.start / LANES..band.vertices.end / LANES {
                         if self.needed[group] {
@@ -57,7 +57,7 @@ impl Frame {
     }
 
     /// Finds the quadrilaterals of a band that may show their front, and their vertices.
-    fn find_fronts(&mut self, mesh: &Mesh, band: &Band, facing: &Facing) {
+    fn find_fronts(&mut self, mesh: &Mesh, band: &Band, facing: &LocalCamera) {
         let facing = facing.of(band);
         self.needed.clear();
         self.needed.resize(mesh.x.len() / LANES, false);
@@ -74,7 +74,7 @@ impl Frame {
     }
 
     /// Projects vertices of a mesh. Gives the outer sides on which any of them is, and on which all are.
-    fn project_all(&mut self, mesh: &Mesh, base: usize, range: Range<usize>, rows: &[Row; 4]) -> (u8, u8) {
+    fn project_all(&mut self, mesh: &Mesh, base: usize, range: Range<usize>, rows: &[AffineRow; 4]) -> (u8, u8) {
         let (mut any, mut all) = (0, u8::MAX);
         for group in range.start / LANES..range.end / LANES {
             let clips = self.project(mesh, base, group, rows);
@@ -92,7 +92,7 @@ impl Frame {
 
     /// Projects a group of vertices of a mesh. Gives them in clip coordinates.
     #[inline(always)]
-    fn project(&mut self, mesh: &Mesh, base: usize, group: usize, rows: &[Row; 4]) -> [clip::Clip; LANES] {
+    fn project(&mut self, mesh: &Mesh, base: usize, group: usize, rows: &[AffineRow; 4]) -> [clip::ClipVertex; LANES] {
         let half = [self.size[0] as f32 * 0.5, self.size[1] as f32 * 0.5];
         let at = LANES * group;
         let coordinates = |v: &[f32]| -> [f32; LANES] {
@@ -126,19 +126,9 @@ impl Frame {
         for (places, pixels) in [(&mut self.x, px), (&mut self.y, py)] {
             let places = &mut places[base + at..][..LANES];
             for (places, pixels) in places.as_chunks_mut().0.iter_mut().zip(pixels.as_chunks().0) {
-                *places = steps(f32x4::new(*pixels)).to_array();
+                *places = to_fixed_point(f32x4::new(*pixels)).to_array();
             }
         }
         clips
     }
-}
-
-/// Converts to 1/256 pixels, rounded to the nearest, halves to even. Beyond [`LIMIT`] the result is at the limit.
-#[inline(always)]
-pub fn steps(pixels: f32x4) -> f32x4 {
-    // adding 1.5 * 2^23 rounds to the nearest integer
-    const SHIFT: f32 = 12_582_912.0;
-    // numbers, even of what is none
-    let v = at_least(pixels * 256.0, f32x4::splat(-LIMIT)).fast_min(f32x4::splat(LIMIT));
-    (v + SHIFT) - SHIFT
 }

@@ -18,7 +18,17 @@ const BLOCK: i32 = 8;
 pub const MEDIUM: i32 = 8 << 8;
 
 /// A projected vertex, 1/256 pixels from the lower left.
-pub type Fixed = [i32; 2];
+pub type FixedVertex = [i32; 2];
+
+/// Converts to 1/256 pixels, rounded to the nearest, halves to even. Beyond [`LIMIT`] the result is at the limit.
+#[inline(always)]
+pub fn to_fixed_point(pixels: f32x4) -> f32x4 {
+    // adding 1.5 * 2^23 rounds to the nearest integer
+    const SHIFT: f32 = 12_582_912.0;
+    // NaN becomes a limit, too
+    let v = at_least(pixels * 256.0, f32x4::splat(-LIMIT)).fast_min(f32x4::splat(LIMIT));
+    (v + SHIFT) - SHIFT
+}
 
 /// A receiver of the samples that a triangle covers.
 pub trait Sink {
@@ -34,19 +44,19 @@ struct Edge {
     dy: i32,
     /// Added to the function, so that zero counts as inside or outside.
     bias: i64,
-    from: Fixed,
+    from: FixedVertex,
 }
 
 /// An edge function around a pixel, in units of [`GRAIN`].
 #[derive(Clone, Copy, Default)]
-struct Local {
+struct PixelEdge {
     samples: i32x4,
     right: i32x4,
     up: i32x4,
 }
 
 impl Edge {
-    fn new(p: Fixed, q: Fixed) -> Self {
+    fn new(p: FixedVertex, q: FixedVertex) -> Self {
         let (dx, dy) = (q[0] - p[0], q[1] - p[1]);
         // the fill rule: a sample on an edge belongs to the triangle on one side of it, so that neighbours neither
         // overlap nor leave a seam
@@ -61,7 +71,7 @@ impl Edge {
 
     /// Returns the three edges of a triangle.
     #[inline(always)]
-    fn around(&[a, b, c]: &[Fixed; 3]) -> [Self; 3] {
+    fn around(&[a, b, c]: &[FixedVertex; 3]) -> [Self; 3] {
         [Self::new(b, c), Self::new(c, a), Self::new(a, b)]
     }
 
@@ -75,11 +85,11 @@ impl Edge {
     /// Returns the edge function around a pixel at whose corner its value is `at`. Dropping the low bits changes no
     /// sign, as all steps are whole grains.
     #[inline(always)]
-    fn local<S: Sampling>(&self, at: i64) -> Local {
+    fn local<S: Sampling>(&self, at: i64) -> PixelEdge {
         // 32 bits hold the values around a block once the grain is taken out: eight pixels of edges that are at most
         // 2^22 long
         let at = (at >> GRAIN_BITS) as i32;
-        Local {
+        PixelEdge {
             samples: S::steps(self.dx, self.dy) + i32x4::splat(at),
             right: i32x4::splat(-self.dy * (256 / GRAIN)),
             up: i32x4::splat(self.dx * (256 / GRAIN)),
@@ -89,14 +99,14 @@ impl Edge {
 
 /// The depth function of a triangle.
 #[derive(Clone, Copy)]
-pub struct Depth {
+pub struct DepthFunction {
     plane: Plane,
     gentle: bool,
     /// Differences between the samples and the corner of a pixel.
     spread: f32x4,
 }
 
-impl Depth {
+impl DepthFunction {
     #[inline(always)]
     pub fn new<S: Sampling>(vertices: [&Vertex; 3], size: [usize; 2]) -> Self {
         let [a, b, c] = vertices;
@@ -137,14 +147,14 @@ impl Depth {
 
 /// Returns whether a triangle is counterclockwise.
 #[inline(always)]
-pub fn is_counterclockwise([a, b, c]: &[Fixed; 3]) -> bool {
+pub fn is_counterclockwise([a, b, c]: &[FixedVertex; 3]) -> bool {
     // coordinates are up to 2^22 apart, so products need 64 bits
     let wide = i64::from;
     wide(b[0] - a[0]) * wide(c[1] - a[1]) > wide(b[1] - a[1]) * wide(c[0] - a[0])
 }
 
 /// Returns the first and the last pixel in each direction that a triangle may cover; `None` if it covers none.
-fn pixels([a, b, c]: &[Fixed; 3], size: [usize; 2]) -> Option<[[i32; 2]; 2]> {
+fn pixels([a, b, c]: &[FixedVertex; 3], size: [usize; 2]) -> Option<[[i32; 2]; 2]> {
     // no sample is nearer to the edges of a pixel than a grain
     let range = |k: usize| {
         let (least, greatest) = (a[k].min(b[k]).min(c[k]), a[k].max(b[k]).max(c[k]));
@@ -178,7 +188,12 @@ impl Edges {
 
 /// Passes the samples that a large counterclockwise triangle covers to `sink`.
 #[inline(always)]
-pub fn large<S: Sampling>(sink: &mut impl Sink, size: [usize; 2], fixed: &[Fixed; 3], depth: impl Fn() -> Depth) {
+pub fn large<S: Sampling>(
+    sink: &mut impl Sink,
+    size: [usize; 2],
+    fixed: &[FixedVertex; 3],
+    depth: impl Fn() -> DepthFunction,
+) {
     if let Some(range) = pixels(fixed, size) {
         blocks::<S>(sink, size[0], &Edge::around(fixed), range, &depth());
     }
@@ -186,7 +201,13 @@ pub fn large<S: Sampling>(sink: &mut impl Sink, size: [usize; 2], fixed: &[Fixed
 
 /// Passes the samples that a triangle of medium size covers to `sink`; its edges are given at the first pixel.
 #[inline(always)]
-pub fn medium<S: Sampling>(sink: &mut impl Sink, width: usize, edges: &Edges, [x, y]: [[i32; 2]; 2], depth: &Depth) {
+pub fn medium<S: Sampling>(
+    sink: &mut impl Sink,
+    width: usize,
+    edges: &Edges,
+    [x, y]: [[i32; 2]; 2],
+    depth: &DepthFunction,
+) {
     // sums stay exact in single precision, as the whole triangle is within a few pixels
     let mut samples = edges.samples;
     let (right, up) = (&edges.right, &edges.up);
@@ -214,14 +235,20 @@ pub fn medium<S: Sampling>(sink: &mut impl Sink, width: usize, edges: &Edges, [x
 
 /// Goes through a large triangle in blocks.
 #[inline(never)]
-fn blocks<S: Sampling>(sink: &mut impl Sink, width: usize, edges: &[Edge; 3], [x, y]: [[i32; 2]; 2], depth: &Depth) {
+fn blocks<S: Sampling>(
+    sink: &mut impl Sink,
+    width: usize,
+    edges: &[Edge; 3],
+    [x, y]: [[i32; 2]; 2],
+    depth: &DepthFunction,
+) {
     let wide = i64::from;
     let reach = i64::from(BLOCK * 256);
     for by in (y[0] / BLOCK * BLOCK..=y[1]).step_by(BLOCK as usize) {
         let y = [by.max(y[0]), (by + BLOCK - 1).min(y[1])];
         for bx in (x[0] / BLOCK * BLOCK..=x[1]).step_by(BLOCK as usize) {
             let x = [bx.max(x[0]), (bx + BLOCK - 1).min(x[1])];
-            let mut local = [Local::default(); 3];
+            let mut local = [PixelEdge::default(); 3];
             let (mut outside, mut whole) = (false, true);
             for (l, e) in local.iter_mut().zip(edges) {
                 let corner = e.at(bx, by);
@@ -257,10 +284,10 @@ fn blocks<S: Sampling>(sink: &mut impl Sink, width: usize, edges: &[Edge; 3], [x
 fn patch<S: Sampling>(
     sink: &mut impl Sink,
     width: usize,
-    mut local: [Local; 3],
+    mut local: [PixelEdge; 3],
     x: [i32; 2],
     y: [i32; 2],
-    depth: &Depth,
+    depth: &DepthFunction,
 ) {
     let mut py = y[0];
     while py <= y[1] {

@@ -2,15 +2,16 @@
 
 use wide::{f32x4, i32x4, u32x4};
 
-use super::camera::Eye;
+use super::camera::ViewCamera;
 use super::frame::Frame;
 use super::lanes::{at_least, four, rounded_down, three};
-use super::light::Vectors;
+use super::light::Vec3x4;
+use super::pixels::Pixels;
 use super::plane::{Basis, Planes};
-use super::sample::channels;
-use super::seen::Seen;
 use super::sky::Rays;
 use super::target::{NONE, Triangle};
+use super::texels::channels;
+use super::visible::VisibleTriangles;
 use crate::scenery::Scenery;
 use crate::texture::TexturePixels;
 use crate::view::Poses;
@@ -18,10 +19,10 @@ use crate::view::Poses;
 /// Computes the colours of a frame.
 #[derive(Debug, Default)]
 pub struct Shader {
-    seen: Seen,
+    seen: VisibleTriangles,
     rays: Rays,
     /// The shading of each triangle that is seen.
-    setups: Vec<Setup>,
+    setups: Vec<TriangleSetup>,
     /// Colours of the samples of each pixel, in bytes; used where there are transparent drawables.
     samples: Vec<[f32x4; 4]>,
 }
@@ -31,62 +32,9 @@ const COUNT: [f32; 16] = [
     0.0, 1.0, 1.0, 2.0, 1.0, 2.0, 2.0, 3.0, 1.0, 2.0, 2.0, 3.0, 2.0, 3.0, 3.0, 4.0,
 ];
 
-/// The pixels of an image that are wanted.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Pixels {
-    /// Every pixel.
-    All,
-    /// Every second pixel of every second row, from the upper left.
-    Second,
-}
-
-impl Pixels {
-    /// Writes the colours of a block of 2 x 2 pixels, the lower two first, where they are wanted.
-    #[inline(always)]
-    fn write(self, out: &mut [u8], [w, h]: [usize; 2], [x, y]: [usize; 2], colours: &[[u8; 4]; 4]) {
-        if self == Self::All && x + 1 < w && y + 1 < h {
-            // nearly every block: two pixels at once, and no questions for each
-            for (up, pair) in colours.as_chunks().0.iter().enumerate() {
-                let [left, right] = pair.map(|c| u64::from(u32::from_le_bytes(c)));
-                let at = 3 * ((h - 1 - y - up) * w + x);
-                out[at..at + 6].copy_from_slice(&(left | right << 24).to_le_bytes()[..6]);
-            }
-            return;
-        }
-        for (k, colour) in colours.iter().enumerate() {
-            let (x, y) = (x + k % 2, y + k / 2);
-            if x < w
-                && y < h
-                && let Some(at) = self.place(x, h - 1 - y, w)
-            {
-                out[3 * at..3 * at + 3].copy_from_slice(&colour[..3]);
-            }
-        }
-    }
-
-    /// Returns where a pixel goes, counted in pixels; `None` if it is not wanted. `y` is counted from the top.
-    #[inline(always)]
-    fn place(self, x: usize, y: usize, width: usize) -> Option<usize> {
-        match self {
-            Self::All => Some(y * width + x),
-            Self::Second => (x.is_multiple_of(2) && y.is_multiple_of(2)).then(|| y / 2 * width.div_ceil(2) + x / 2),
-        }
-    }
-
-    /// Returns which samples of a block of 2 x 2 pixels are wanted: four bits for each pixel, the lower two pixels
-    /// first.
-    fn of_block(self, height: usize) -> u32 {
-        match self {
-            Self::All => 0xffff,
-            Self::Second if height.is_multiple_of(2) => 0x0f00,
-            Self::Second => 0x000f,
-        }
-    }
-}
-
 /// The shading of a triangle: its colour and texture coordinates as linear functions.
 #[derive(Clone, Copy, Debug)]
-struct Setup {
+struct TriangleSetup {
     /// Colour, divided by w.
     colour: Planes,
     texture: Planes,
@@ -103,7 +51,7 @@ impl Shader {
         frame: &mut Frame,
         scenery: &Scenery,
         poses: &Poses,
-        eye: &Eye,
+        eye: &ViewCamera,
         pixels: Pixels,
         out: &mut [u8],
     ) {
@@ -112,7 +60,7 @@ impl Shader {
         self.rays.aim(eye, frame.size);
         self.setups.clear();
         for &id in &self.seen.triangles {
-            let setup = Setup::new(frame, scenery, &self.seen, &frame.colour.records[id as usize]);
+            let setup = TriangleSetup::new(frame, scenery, &self.seen, &frame.colour.records[id as usize]);
             self.setups.push(setup);
         }
         if !frame.layers.is_empty() {
@@ -145,7 +93,7 @@ impl Shader {
     /// Passes on the colours that are seen in a block of 2 x 2 pixels, at the samples with a bit in `part`: four bits for each
     /// pixel, the colours of all pixels in bytes.
     #[inline(always)]
-    fn block(&self, frame: &Frame, scenery: &Scenery, at: [usize; 2], part: u32, mut emit: impl FnMut(u32, &Vectors)) {
+    fn block(&self, frame: &Frame, scenery: &Scenery, at: [usize; 2], part: u32, mut emit: impl FnMut(u32, &Vec3x4)) {
         let (w, h) = (frame.size[0], frame.size[1]);
         let [x, y] = at;
         let first = y * w + x;
@@ -217,7 +165,7 @@ impl Shader {
 
     /// Returns the colours of a record at the centres of those pixels of a block that are `wanted`.
     #[inline(always)]
-    fn colours(&self, frame: &Frame, scenery: &Scenery, at: [usize; 2], id: u32, wanted: [bool; 4]) -> Vectors {
+    fn colours(&self, frame: &Frame, scenery: &Scenery, at: [usize; 2], id: u32, wanted: [bool; 4]) -> Vec3x4 {
         if id == NONE {
             return self.rays.colours(scenery, at, wanted);
         }
@@ -229,7 +177,7 @@ impl Shader {
 
 /// Converts colours of 0..1 to bytes: rounded to the nearest, halves to even; NaN becomes 0.
 #[inline(always)]
-fn bytes(colours: &Vectors) -> Vectors {
+fn bytes(colours: &Vec3x4) -> Vec3x4 {
     three(|k| rounded(colours[k]))
 }
 
@@ -244,14 +192,14 @@ fn rounded(colour: f32x4) -> f32x4 {
 
 /// Returns red, green and blue of each pixel in bytes, rounded down; the colours are whole quarters.
 #[inline(always)]
-fn packed(colours: &Vectors) -> [[u8; 4]; 4] {
+fn packed(colours: &Vec3x4) -> [[u8; 4]; 4] {
     let [r, g, b] = three(|k| rounded_down(colours[k]));
     let joined: i32x4 = r | g << 8 | b << 16;
     joined.to_array().map(i32::to_le_bytes)
 }
 
 /// Returns the colour of each pixel.
-fn by_pixel(&[r, g, b]: &Vectors) -> [f32x4; 4] {
+fn by_pixel(&[r, g, b]: &Vec3x4) -> [f32x4; 4] {
     f32x4::transpose([r, g, b, f32x4::ZERO])
 }
 
@@ -261,8 +209,8 @@ fn blend(under: f32x4, over: f32x4, alpha: f32) -> f32x4 {
     rounded(over * f32x4::splat(alpha) + under / f32x4::splat(255.0) * f32x4::splat(1.0 - alpha))
 }
 
-impl Setup {
-    fn new(frame: &Frame, scenery: &Scenery, seen: &Seen, record: &Triangle) -> Self {
+impl TriangleSetup {
+    fn new(frame: &Frame, scenery: &Scenery, seen: &VisibleTriangles, record: &Triangle) -> Self {
         let lit = three(|k| seen.lit(record.vertices[k]));
         let vertices = three(|k| &frame.vertices[record.vertices[k] as usize]);
         let basis = Basis::new(vertices);
@@ -295,7 +243,7 @@ impl Setup {
 
     /// Returns the colours of a block of 2 x 2 pixels.
     #[inline(always)]
-    fn colours(&self, scenery: &Scenery, x: f32, y: f32, wanted: [bool; 4]) -> Vectors {
+    fn colours(&self, scenery: &Scenery, x: f32, y: f32, wanted: [bool; 4]) -> Vec3x4 {
         let [r, g, b, w] = f32x4::transpose(self.colour.block(x, y));
         // the perspective division: one for each pixel instead of one for each channel
         let w = f32x4::ONE / w;

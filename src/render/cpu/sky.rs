@@ -2,13 +2,13 @@
 
 use wide::f32x4;
 
-use super::camera::Eye;
+use super::camera::ViewCamera;
 use super::lanes::three;
-use super::light::Vectors;
-use super::sample::Coordinates;
+use super::light::Vec3x4;
+use super::texels::Coordinates;
 use crate::scenery::Scenery;
 
-/// The directions in which the pixels of an image look: what all blocks of a column have in common, and all of a row.
+/// The directions in which the pixels of an image look: the parts that blocks of a column share, and blocks of a row.
 #[derive(Debug, Default)]
 pub struct Rays {
     /// For each column of blocks of 2 x 2 pixels.
@@ -19,7 +19,7 @@ pub struct Rays {
 
 impl Rays {
     /// Finds the directions of an image of `width` and `height` pixels.
-    pub fn aim(&mut self, eye: &Eye, [width, height]: [usize; 2]) {
+    pub fn aim(&mut self, eye: &ViewCamera, [width, height]: [usize; 2]) {
         let places = |first: usize, pixels: usize, tan: f32, of: fn(f32) -> [f32; 4]| {
             let at = f32x4::new(of(first as f32 + 0.5));
             (at * (2.0 / pixels as f32) - 1.0) * tan
@@ -39,7 +39,7 @@ impl Rays {
     /// Returns the colours of the background in a block, red, green and blue; 0..1. `x` and `y` are those of its first
     /// pixel.
     #[inline(always)]
-    pub fn colours(&self, scenery: &Scenery, [x, y]: [usize; 2], wanted: [bool; 4]) -> Vectors {
+    pub fn colours(&self, scenery: &Scenery, [x, y]: [usize; 2], wanted: [bool; 4]) -> Vec3x4 {
         let Some(sky) = scenery.sky else {
             return [f32x4::ZERO; 3];
         };

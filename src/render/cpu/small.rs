@@ -10,14 +10,14 @@ pub const PIXEL: i32 = 256;
 
 /// The samples that a small triangle covers.
 #[derive(Clone, Copy, Debug)]
-pub struct Spots {
+pub struct CoveredSamples {
     /// The lower left of the triangle's extent, 1/256 pixels.
     pub corner: [i32; 2],
     /// One bit for each kind of sample.
     pub samples: u32,
 }
 
-impl Spots {
+impl CoveredSamples {
     /// Returns the pixel in which a sample lies.
     #[inline(always)]
     pub fn pixel<S: Sampling>(&self, sample: usize) -> [i32; 2] {

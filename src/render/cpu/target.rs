@@ -7,14 +7,14 @@ use wide::{f32x4, u32x4};
 
 use super::lanes::{four, three};
 use super::plane::Vertex;
-use super::raster::{Depth, Edges, Fixed, Sink, large, medium};
+use super::raster::{DepthFunction, Edges, FixedVertex, Sink, large, medium};
 use super::sampling::Sampling;
-use super::small::Spots;
+use super::small::CoveredSamples;
 
 /// Index of nothing.
 pub const NONE: u32 = u32::MAX;
 
-/// A triangle that some sample has shown: what the visibility buffer refers to.
+/// A triangle that some sample has shown. The visibility buffer refers to it by index.
 #[derive(Clone, Copy, Debug)]
 pub struct Triangle {
     /// Index of the drawable.
@@ -27,7 +27,7 @@ pub struct Triangle {
 
 /// The image being drawn; row 0 is the lowest.
 #[derive(Debug, Default)]
-pub struct Target {
+pub struct VisibilityBuffer {
     pub width: usize,
     pub height: usize,
     /// Depth of each sample; 0 is the farthest.
@@ -50,7 +50,7 @@ pub struct Fragment {
     pub samples: u32,
 }
 
-impl Target {
+impl VisibilityBuffer {
     pub fn clear(&mut self, width: usize, height: usize) {
         (self.width, self.height) = (width, height);
         self.depth.clear();
@@ -91,13 +91,13 @@ impl Target {
     /// Draws a large counterclockwise triangle as `K` says: [`Opaque`] or [`Transparent`]. `record` has the indices of its
     /// corners among `vertices`.
     #[inline(never)]
-    pub fn large<'a, S: Sampling, K>(&'a mut self, fixed: &[Fixed; 3], vertices: &[Vertex], record: Triangle)
+    pub fn large<'a, S: Sampling, K>(&'a mut self, fixed: &[FixedVertex; 3], vertices: &[Vertex], record: Triangle)
     where
         Writer<'a, K>: Sink,
     {
         let size = [self.width, self.height];
         let corners = record.vertices;
-        let depth = || Depth::new::<S>(three(|k| &vertices[corners[k] as usize]), size);
+        let depth = || DepthFunction::new::<S>(three(|k| &vertices[corners[k] as usize]), size);
         large::<S>(&mut self.writer::<K>(record), size, fixed, depth);
     }
 
@@ -107,7 +107,7 @@ impl Target {
         &'a mut self,
         edges: &Edges,
         range: [[i32; 2]; 2],
-        depth: &Depth,
+        depth: &DepthFunction,
         record: Triangle,
     ) where
         Writer<'a, K>: Sink,
@@ -125,9 +125,9 @@ impl Target {
         }
     }
 
-    /// Draws a small triangle, of which the covered samples are known.
+    /// Draws a small triangle whose covered samples are known.
     #[inline(never)]
-    pub fn spots<'a, S: Sampling, K>(&'a mut self, spots: &Spots, depth: &Depth, record: Triangle)
+    pub fn spots<'a, S: Sampling, K>(&'a mut self, spots: &CoveredSamples, depth: &DepthFunction, record: Triangle)
     where
         Writer<'a, K>: Sink,
     {
@@ -153,14 +153,14 @@ impl Target {
     }
 }
 
-/// The kind of triangle that hides what is behind it: each sample keeps the nearest.
+/// The kind of triangle that hides those behind it: each sample keeps the nearest.
 pub struct Opaque;
 /// The kind of triangle that hides nothing: its fragments in front of everything opaque are collected.
 pub struct Transparent;
 
 /// A sink that writes a triangle to a target, and records it at the first sample that shows it.
 pub struct Writer<'a, K> {
-    target: &'a mut Target,
+    target: &'a mut VisibilityBuffer,
     record: Triangle,
     id: u32,
     kind: PhantomData<K>,

@@ -2,23 +2,22 @@
 
 use wide::f32x4;
 
-use super::camera::Row;
-use super::clip::{self, Clip, EdgePoint, Origin, Place, Polygon};
+use super::camera::AffineRow;
+use super::clip::{self, ClipVertex, CornerOrigin, EdgePoint, FrustumTest, Polygon};
 use super::frame::{ClipPoint, Frame, PlacedDrawable, Targets};
-use super::group::{Drawn, Waiting};
+use super::group::{DrawMethod, TriangleGroup};
 use super::lanes::{four, three};
 use super::plane::Vertex;
-use super::project::steps;
-use super::raster::{Sink, is_counterclockwise};
+use super::raster::{Sink, is_counterclockwise, to_fixed_point};
 use super::sampling::{FourSamples, PixelCentre, Sampling};
 use super::small::Quads;
-use super::target::{NONE, Opaque, Target, Transparent, Triangle, Writer};
+use super::target::{NONE, Opaque, Transparent, Triangle, VisibilityBuffer, Writer};
 use crate::mesh::{Band, Mesh};
 use crate::strip::{STRIP_LANES, Strip};
 
 impl Frame {
     /// Draws a band that is not wholly in view.
-    pub fn across(&mut self, mesh: &Mesh, rows: &[Row; 4], index: usize, band: &Band) {
+    pub fn across(&mut self, mesh: &Mesh, rows: &[AffineRow; 4], index: usize, band: &Band) {
         let triangles = &mesh.triangles[band.triangles.clone()];
         // corners of strips stand for triangles that are wound as in the mesh
         let (loose, strips): (_, &[Strip]) = if self.draws[index].flip {
@@ -32,9 +31,9 @@ impl Frame {
         for strip in strips {
             for k in 0..strip.count / STRIP_LANES {
                 match self.place_of(index, strip, k) {
-                    Place::Inside => self.quadrilaterals(index, strip, k),
-                    Place::Outside => {}
-                    Place::Across => {
+                    FrustumTest::Inside => self.quadrilaterals(index, strip, k),
+                    FrustumTest::Outside => {}
+                    FrustumTest::Across => {
                         for j in STRIP_LANES * k..STRIP_LANES * (k + 1) {
                             let [a, b, c, d] = strip.corners(j);
                             self.cut(mesh, rows, index, [a, b, d]);
@@ -50,7 +49,7 @@ impl Frame {
 
     /// Returns where four quadrilaterals of a strip are, by their corners.
     #[inline(always)]
-    fn place_of(&self, index: usize, strip: &Strip, k: usize) -> Place {
+    fn place_of(&self, index: usize, strip: &Strip, k: usize) -> FrustumTest {
         let base = self.draws[index].base;
         // a byte for each quadrilateral, with one bit for each plane that the corner is beyond
         let [a, b, c, d] = four(|i| {
@@ -64,18 +63,18 @@ impl Frame {
         // bits of planes are the lower six of a byte: a sum with 127 has the highest if there is any
         let each_has_some = |sides: u32| (sides + 0x7f7f_7f7f) & 0x8080_8080 == 0x8080_8080;
         if a | b | c | d == 0 {
-            Place::Inside
+            FrustumTest::Inside
         } else if each_has_some(a & b & d) && (strip.fan || each_has_some(b & c & d)) {
             // all corners of each triangle are beyond the same plane
-            Place::Outside
+            FrustumTest::Outside
         } else {
-            Place::Across
+            FrustumTest::Across
         }
     }
 
-    /// Draws what is in view of a triangle.
+    /// Draws the part of a triangle that is in view.
     #[inline(always)]
-    fn cut(&mut self, mesh: &Mesh, rows: &[Row; 4], index: usize, [a, b, c]: [u16; 3]) {
+    fn cut(&mut self, mesh: &Mesh, rows: &[AffineRow; 4], index: usize, [a, b, c]: [u16; 3]) {
         let PlacedDrawable { flip, base, .. } = self.draws[index];
         let t = if flip { [a, c, b] } else { [a, b, c] };
         let own = three(|k| base + usize::from(t[k]));
@@ -182,17 +181,17 @@ impl Frame {
         self.waiting.clear();
     }
 
-    /// Draws what is left of a triangle that reaches beyond some sides of what is seen.
+    /// Clips and draws a triangle that reaches beyond some sides of the view volume.
     #[cold]
-    fn clipped(&mut self, mesh: &Mesh, rows: &[Row; 4], index: usize, t: [u16; 3], sides: u8) {
+    fn clipped(&mut self, mesh: &Mesh, rows: &[AffineRow; 4], index: usize, t: [u16; 3], sides: u8) {
         let draw = self.draws[index];
         let half = self.size.map(|n| n as f32 * 0.5);
         let corner = |i: u16| {
             let i = usize::from(i);
             clip::apply(rows, [mesh.x[i], mesh.y[i], mesh.z[i]])
         };
-        let triangle: [Clip; 3] = [corner(t[0]), corner(t[1]), corner(t[2])];
-        // back faces are dropped before the work of clipping; what is not clearly one, the rasteriser decides
+        let triangle: [ClipVertex; 3] = [corner(t[0]), corner(t[1]), corner(t[2])];
+        // back faces are dropped before the work of clipping; the rasteriser decides unclear cases
         if clip::faces_away(&triangle) {
             return;
         }
@@ -203,13 +202,13 @@ impl Frame {
             return;
         }
         let first = self.vertices.len();
-        let place = |source: Origin| match source {
-            Origin::Own(k) => draw.base + usize::from(t[k]),
-            Origin::New(k) => first + k,
+        let place = |source: CornerOrigin| match source {
+            CornerOrigin::Own(k) => draw.base + usize::from(t[k]),
+            CornerOrigin::New(k) => first + k,
         };
         for &EdgePoint { clip, from, to, share } in points {
             let vertex = clip::project(clip, half);
-            let [x, y, ..] = steps(f32x4::new([vertex.x, vertex.y, 0.0, 0.0])).to_array();
+            let [x, y, ..] = to_fixed_point(f32x4::new([vertex.x, vertex.y, 0.0, 0.0])).to_array();
             self.x.push(x);
             self.y.push(y);
             self.vertices.push(vertex);
@@ -243,7 +242,7 @@ struct Geometry<'a> {
 impl Geometry<'_> {
     /// Rasterises the triangles that wait, as `K` says.
     #[inline(always)]
-    fn raster<S: Sampling, K>(&self, waiting: &Waiting, index: usize, target: &mut Target)
+    fn raster<S: Sampling, K>(&self, waiting: &TriangleGroup, index: usize, target: &mut VisibilityBuffer)
     where
         for<'t> Writer<'t, K>: Sink,
     {
@@ -256,9 +255,9 @@ impl Geometry<'_> {
                 setup: NONE,
             };
             match drawn {
-                Drawn::Spots(spots, depth) => target.spots::<S, K>(&spots, &depth, record),
-                Drawn::Medium(edges, range, depth) => target.medium::<S, K>(&edges, range, &depth, record),
-                Drawn::Large => {
+                DrawMethod::Spots(spots, depth) => target.spots::<S, K>(&spots, &depth, record),
+                DrawMethod::Medium(edges, range, depth) => target.medium::<S, K>(&edges, range, &depth, record),
+                DrawMethod::Large => {
                     let fixed = three(|k| [self.x[own[k]] as i32, self.y[own[k]] as i32]);
                     if is_counterclockwise(&fixed) {
                         target.large::<S, K>(&fixed, self.vertices, record);

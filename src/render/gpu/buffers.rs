@@ -2,7 +2,8 @@
 
 use super::GpuError;
 use super::device::Gpu;
-use super::frame::{Frame, INSTANCE, VIEW_ROWS, views_size};
+use super::frame::{SubmissionData, VIEW_ROWS, views_size};
+use super::pipelines::INSTANCE;
 use super::pipelines::Layouts;
 
 /// The buffers for instances and views; they grow with the largest submission.
@@ -72,7 +73,7 @@ impl Buffers {
         gpu: &Gpu,
         layouts: &Layouts,
         lights: &wgpu::Buffer,
-        frame: &Frame,
+        frame: &SubmissionData,
         views: usize,
     ) -> Result<(), GpuError> {
         let bytes: &[u8] = bytemuck::cast_slice(frame.instances.as_flattened());

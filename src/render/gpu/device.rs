@@ -15,11 +15,11 @@ pub struct Gpu {
     pub name: String,
     /// Whether the adapter computes on the CPU.
     pub software: bool,
-    faults: Arc<Mutex<Faults>>,
+    faults: Arc<Mutex<DeviceErrors>>,
 }
 
 #[derive(Debug, Default)]
-struct Faults {
+struct DeviceErrors {
     /// The first error since the last check of each thread: several may share the device, and errors come up in the thread that
     /// caused them.
     first: HashMap<ThreadId, GpuError>,
@@ -88,7 +88,7 @@ impl Gpu {
 
     /// Wraps a device that is already open. Errors outside error scopes are reported here from now on.
     pub fn new(device: wgpu::Device, queue: wgpu::Queue) -> Self {
-        let faults = Arc::new(Mutex::new(Faults::default()));
+        let faults = Arc::new(Mutex::new(DeviceErrors::default()));
         let seen = faults.clone();
         device.on_uncaptured_error(Arc::new(move |e: wgpu::Error| {
             let error = match e {

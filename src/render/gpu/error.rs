@@ -27,7 +27,9 @@ pub enum GpuError {
         limit: u64,
     },
     /// The device is out of memory.
-    #[error("the graphics device is out of memory; draw fewer or smaller pictures at once, or use renderer: cpu")]
+    #[error(
+        "the graphics device is out of memory; draw fewer or smaller pictures at once, or use the CPU renderer (renderer: cpu)"
+    )]
     OutOfMemory,
     /// The device was lost: its driver was reset, or it was removed.
     #[error("the graphics device was lost ({0}); open a new renderer")]

@@ -1,16 +1,15 @@
 //! The part of a submission that changes from frame to frame: culled drawables, their instances, the order of drawing.
 
 use super::atlas::{Atlas, Tile};
-use super::pipelines::Output;
+use super::pipelines::{INSTANCE, Output};
 use super::scene::{GpuScene, LIGHTS, VERTEX, add_vertices};
 use crate::RenderRequest;
-use crate::cpu::{Eye, PlacedLight, V3, dot, place_lights, single};
+use crate::cpu::{PlacedLight, Vec3f, ViewCamera, dot, place_lights};
 use crate::drawable::{BEHIND, Drawable, Element, OPAQUE, Shape};
+use crate::posed_skins::PosedSkins;
 use crate::scenery::Scenery;
-use crate::skin::PosedSkins;
+use crate::single::single;
 
-/// Number of values per instance: the attributes of the shader's `Vertex` from `row_x` on.
-pub const INSTANCE: usize = 44;
 /// Number of views in a column of the texture of views, as in the shader.
 pub const VIEW_ROWS: usize = 1024;
 /// Number of texels per view, as in the shader.
@@ -18,11 +17,11 @@ pub const VIEW_TEXELS: usize = 7 + 2 * LIGHTS;
 
 /// Instances of one class, drawn by one call.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Call {
+pub struct DrawCall {
     pub class: usize,
     pub first: u32,
     pub count: u32,
-    /// First vertex of a skin in [`Frame::worn_vertices`].
+    /// First vertex of a skin in [`SubmissionData::worn_vertices`].
     pub skins: Option<i32>,
 }
 
@@ -48,18 +47,18 @@ pub struct Chunk {
 
 /// The data of a submission, kept between submissions to reuse its memory.
 #[derive(Debug, Default)]
-pub struct Frame {
+pub struct SubmissionData {
     pub instances: Vec<[f32; INSTANCE]>,
     /// The texture of views, row by row.
     pub views: Vec<[f32; 4]>,
-    pub calls: Vec<Call>,
+    pub calls: Vec<DrawCall>,
     pub chunks: Vec<Chunk>,
     /// Vertices of the skins, view by view.
     pub worn_vertices: Vec<f32>,
     /// First vertex of each mesh of the skins, view by view.
     worn_starts: Vec<i32>,
     skins: PosedSkins,
-    eyes: Vec<Eye>,
+    eyes: Vec<ViewCamera>,
     lights: Vec<PlacedLight>,
     /// View and drawable of the opaque drawables inside the view, for each class.
     inside: Vec<Vec<(usize, usize)>>,
@@ -89,7 +88,7 @@ pub fn views_size(count: usize) -> [usize; 2] {
     ]
 }
 
-impl Frame {
+impl SubmissionData {
     pub fn build(&mut self, r: &Submission) {
         self.instances.clear();
         self.calls.clear();
@@ -105,7 +104,7 @@ impl Frame {
             let end = r.atlas.tiles.partition_point(|t| t.chunk <= chunk);
             for view in first..end {
                 let request = &r.requests[view];
-                let eye = Eye::new(r.scenery, &request.poses, &request.view);
+                let eye = ViewCamera::new(r.scenery, &request.poses, &request.view);
                 self.eyes.push(eye);
                 self.place(r, view, &eye);
                 self.sort(r, view, &eye);
@@ -146,13 +145,13 @@ impl Frame {
     }
 
     /// Writes the texels of a view.
-    fn place(&mut self, r: &Submission, view: usize, eye: &Eye) {
+    fn place(&mut self, r: &Submission, view: usize, eye: &ViewCamera) {
         let request = &r.requests[view];
         place_lights(r.scenery, &request.poses, eye, &mut self.lights);
         let [width, _] = views_size(r.requests.len());
         let start = view % VIEW_ROWS * width + view / VIEW_ROWS * VIEW_TEXELS;
         let texels = &mut self.views[start..start + VIEW_TEXELS];
-        let with = |[a, b, c]: V3, w: f32| [a, b, c, w];
+        let with = |[a, b, c]: Vec3f, w: f32| [a, b, c, w];
         let Tile {
             x, y, width, height, ..
         } = r.atlas.tiles[view];
@@ -177,7 +176,7 @@ impl Frame {
     }
 
     /// Culls and sorts the drawables of a view.
-    fn sort(&mut self, r: &Submission, view: usize, eye: &Eye) {
+    fn sort(&mut self, r: &Submission, view: usize, eye: &ViewCamera) {
         for (i, drawable) in r.scenery.drawables.iter().enumerate() {
             let Some((drawable, pos, mat)) = drawable.placed(&r.requests[view].poses) else {
                 continue;
@@ -275,7 +274,7 @@ impl Frame {
         });
         match self.calls[start..].last_mut() {
             Some(call) if (call.class, call.skins) == (class, skins) => call.count += 1,
-            _ => self.calls.push(Call {
+            _ => self.calls.push(DrawCall {
                 class,
                 first,
                 count: 1,
@@ -287,7 +286,7 @@ impl Frame {
 }
 
 /// Returns whether a sphere is in view: `None` if it is not, `Some(true)` if all of it is.
-fn seen(eye: &Eye, [x, y, z]: V3, radius: f32, far: f32) -> Option<bool> {
+fn seen(eye: &ViewCamera, [x, y, z]: Vec3f, radius: f32, far: f32) -> Option<bool> {
     // distance from the sides of the view, positive inside
     let side = |v: f32, tan: f32| (z * tan - v.abs()) / (1.0 + tan * tan).sqrt();
     let margin = (z - eye.near).min(side(x, eye.tan[0])).min(side(y, eye.tan[1]));
@@ -300,13 +299,13 @@ fn seen(eye: &Eye, [x, y, z]: V3, radius: f32, far: f32) -> Option<bool> {
 }
 
 /// Returns whether a drawable is a plane seen from behind.
-fn behind(eye: &Eye, drawable: &Drawable, pos: V3, mat: &crate::math::Mat3) -> bool {
+fn behind(eye: &ViewCamera, drawable: &Drawable, pos: Vec3f, mat: &crate::math::Mat3) -> bool {
     let d = [eye.pos[0] - pos[0], eye.pos[1] - pos[1], eye.pos[2] - pos[2]];
     drawable.shape == Shape::Plane && dot(d, [mat[2] as f32, mat[5] as f32, mat[8] as f32]) < 0.0
 }
 
 /// Returns the attributes of an instance; `None` for a piece of a tendon that is not there.
-fn instance(r: &Submission, eye: &Eye, view: usize, drawable: &Drawable, own: bool) -> Option<[f32; INSTANCE]> {
+fn instance(r: &Submission, eye: &ViewCamera, view: usize, drawable: &Drawable, own: bool) -> Option<[f32; INSTANCE]> {
     let (drawable, pos, mat) = drawable.placed(&r.requests[view].poses)?;
     let drawable = &drawable;
     let [x, y, z] = eye.model(pos, &mat, drawable.size);

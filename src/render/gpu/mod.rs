@@ -33,6 +33,7 @@ mod channel;
 mod device;
 mod error;
 mod frame;
+mod map_status;
 mod pending;
 mod pipelines;
 mod scene;
@@ -51,11 +52,11 @@ use std::sync::{Arc, PoisonError};
 use atlas::Atlas;
 use buffers::{Buffers, fits};
 use device::Gpu;
-use frame::{Frame, Submission};
-use pending::{Pool, Slot};
-use pipelines::{Layouts, Output, Pipelines, Style};
+use frame::{Submission, SubmissionData};
+use pending::{BufferPool, Slot};
+use pipelines::{ColourSource, Layouts, Output, Pipelines, Style};
 use scene::GpuScene;
-use target::Target;
+use target::Attachments;
 
 use crate::{RenderError, RenderRequest, Scenery};
 
@@ -71,11 +72,11 @@ pub struct GpuRenderer {
     layouts: Layouts,
     pipelines: Pipelines,
     scene: GpuScene,
-    frame: Frame,
+    frame: SubmissionData,
     buffers: Buffers,
     /// Targets for [`Output::Colour`] and [`Output::Measure`].
-    targets: [Option<Target>; 2],
-    pool: Pool,
+    targets: [Option<Attachments>; 2],
+    pool: BufferPool,
     apart: bool,
     submissions: u64,
 }
@@ -114,10 +115,10 @@ impl GpuRenderer {
         let scene = GpuScene::new(&gpu, &layouts, &scenery);
         let renderer = Self {
             pipelines: Pipelines::new(&gpu),
-            frame: Frame::default(),
+            frame: SubmissionData::default(),
             buffers: Buffers::new(&gpu, &layouts, &scene.lights, 256, 2),
             targets: [None, None],
-            pool: Pool::default(),
+            pool: BufferPool::default(),
             apart: gpu.software,
             submissions: 0,
             gpu,
@@ -228,7 +229,7 @@ impl GpuRenderer {
         };
         // the old attachments go before the new ones are made: both at once might not fit
         *slot = None;
-        *slot = Some(Target::new(&self.gpu, output, size));
+        *slot = Some(Attachments::new(&self.gpu, output, size));
         size
     }
 
@@ -364,7 +365,7 @@ impl Pass<'_, '_> {
     }
 
     /// Draws into one image after the other.
-    fn own(&mut self, own: &[frame::ViewCalls], tiles: &[atlas::Tile], style: fn(scene::ColourSource) -> Style) {
+    fn own(&mut self, own: &[frame::ViewCalls], tiles: &[atlas::Tile], style: fn(ColourSource) -> Style) {
         for frame::ViewCalls { view, calls } in own {
             let t = &tiles[*view];
             let (x, y, w, h) = (t.x as f32, t.y as f32, t.width as f32, t.height as f32);
@@ -374,7 +375,7 @@ impl Pass<'_, '_> {
         }
     }
 
-    fn calls(&mut self, calls: &std::ops::Range<usize>, style: fn(scene::ColourSource) -> Style) {
+    fn calls(&mut self, calls: &std::ops::Range<usize>, style: fn(ColourSource) -> Style) {
         let r = self.renderer;
         for call in &r.frame.calls[calls.clone()] {
             let class = &r.scene.classes[call.class];

@@ -3,9 +3,10 @@
 use std::future::Future;
 use std::pin::Pin;
 use std::sync::{Arc, Condvar, Mutex, PoisonError};
-use std::task::{Context, Poll, Waker};
+use std::task::{Context, Poll};
 
 use super::device::Gpu;
+use super::map_status::MapStatus;
 use super::{Channel, GpuError};
 use crate::RenderError;
 
@@ -19,22 +20,7 @@ pub struct Slot {
 }
 
 /// Buffers that are free to be used again.
-pub type Pool = Arc<Mutex<Vec<wgpu::Buffer>>>;
-
-/// The device's answer about the buffer, and the task that waits for it.
-#[derive(Debug, Default)]
-pub(super) struct Arrival {
-    mapped: Option<Result<(), wgpu::BufferAsyncError>>,
-    waker: Option<Waker>,
-}
-
-#[cfg(target_arch = "wasm32")]
-impl Arrival {
-    /// Hands over the task that waits, to be woken.
-    pub fn waiting(&mut self) -> Option<Waker> {
-        self.waker.take()
-    }
-}
+pub type BufferPool = Arc<Mutex<Vec<wgpu::Buffer>>>;
 
 /// Images that the device is drawing. Several submissions may be pending at once.
 #[derive(Debug)]
@@ -51,11 +37,11 @@ struct Transfer {
     buffer: wgpu::Buffer,
     #[cfg_attr(target_arch = "wasm32", allow(dead_code))] // browsers cannot wait
     submission: wgpu::SubmissionIndex,
-    arrival: Arc<Mutex<Arrival>>,
+    arrival: Arc<Mutex<MapStatus>>,
     /// Told when the arrival is there.
     #[cfg_attr(target_arch = "wasm32", allow(dead_code))] // browsers cannot wait
     told: Arc<Condvar>,
-    pool: Pool,
+    pool: BufferPool,
 }
 
 /// Images, one after the other: rows from the top, three values for each pixel of [`Rgb`](super::Rgb), one of the
@@ -116,9 +102,9 @@ impl<C: Channel> Pending<C> {
         slots: Vec<Slot>,
         buffer: wgpu::Buffer,
         submission: wgpu::SubmissionIndex,
-        pool: &Pool,
+        pool: &BufferPool,
     ) -> Self {
-        let arrival = Arc::new(Mutex::new(Arrival::default()));
+        let arrival = Arc::new(Mutex::new(MapStatus::default()));
         let told = Arc::new(Condvar::new());
         let (of_device, waiting) = (arrival.clone(), told.clone());
         buffer.map_async(wgpu::MapMode::Read, .., move |result| {
@@ -151,7 +137,7 @@ impl<C: Channel> Pending<C> {
     /// Fails if the device was lost, ran out of memory or reported an error.
     pub async fn read(self) -> Result<Images<C>, RenderError> {
         if let Some(transfer) = &self.transfer {
-            Mapped {
+            MapFuture {
                 gpu: &self.gpu,
                 transfer,
             }
@@ -254,12 +240,12 @@ impl Transfer {
 }
 
 /// A future that is ready when the buffer is mapped.
-struct Mapped<'a> {
+struct MapFuture<'a> {
     gpu: &'a Gpu,
     transfer: &'a Transfer,
 }
 
-impl Future for Mapped<'_> {
+impl Future for MapFuture<'_> {
     type Output = Result<(), GpuError>;
 
     fn poll(self: Pin<&mut Self>, context: &mut Context<'_>) -> Poll<Self::Output> {

@@ -3,11 +3,12 @@
 use std::sync::OnceLock;
 
 use super::device::Gpu;
-use super::frame::INSTANCE;
-use super::scene::ColourSource;
 
 /// Number of samples per pixel for colours.
 pub const SAMPLES: u32 = 4;
+
+/// Number of values per instance: the attributes of the shader's `Vertex` from `row_x` on.
+pub const INSTANCE: usize = 44;
 
 /// The values that a pass writes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -40,6 +41,14 @@ impl Output {
             Self::Measure => 1,
         }
     }
+}
+
+/// The source of a drawable's colour, which decides the pipeline.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum ColourSource {
+    Plain,
+    Image,
+    Cube,
 }
 
 /// A way to draw shapes, which decides the pipeline.

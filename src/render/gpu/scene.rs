@@ -6,27 +6,19 @@ use std::ops::Range;
 use wgpu::util::DeviceExt;
 
 use super::device::Gpu;
-use super::pipelines::Layouts;
+use super::pipelines::{ColourSource, Layouts};
 use crate::drawable::{Drawable, Shape};
 use crate::mesh::{Mesh, MeshPart};
 use crate::scenery::Scenery;
 use crate::skin::SkinLook;
-use crate::texture::{Face, Level, TexturePixels};
+use crate::texture::{MipChain, MipLevel, TexturePixels};
 
 /// Number of lights in the shader.
 pub const LIGHTS: usize = 8;
 
-/// The source of a drawable's colour, which decides the pipeline.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum ColourSource {
-    Plain,
-    Image,
-    Cube,
-}
-
 /// Drawables that share mesh and texture, drawn by one call.
 #[derive(Clone, Debug)]
-pub struct Class {
+pub struct DrawClass {
     pub paint: ColourSource,
     pub texture: Option<usize>,
     /// Range in the buffer of indices.
@@ -41,7 +33,7 @@ pub struct GpuScene {
     pub vertices: wgpu::Buffer,
     pub indices: wgpu::Buffer,
     /// Classes of drawables, sorted by pipeline, then texture.
-    pub classes: Vec<Class>,
+    pub classes: Vec<DrawClass>,
     /// Class of each drawable.
     pub class_of: Vec<usize>,
     /// Class of each drawable seen from behind; differs for planes.
@@ -79,7 +71,7 @@ impl GpuScene {
         for (&(paint, texture, mesh), at) in &mut index {
             *at = classes.len();
             let indices = ranges[mesh].clone();
-            classes.push(Class {
+            classes.push(DrawClass {
                 paint,
                 texture,
                 indices,
@@ -183,7 +175,7 @@ fn lights(scenery: &Scenery) -> [[f32; 4]; 4 * LIGHTS + 1] {
 }
 
 /// Uploads one mip level of one side of a texture.
-fn write_level(gpu: &Gpu, texture: &wgpu::Texture, [z, mip_level]: [u32; 2], level: &Level) {
+fn write_level(gpu: &Gpu, texture: &wgpu::Texture, [z, mip_level]: [u32; 2], level: &MipLevel) {
     let to = wgpu::TexelCopyTextureInfo {
         texture,
         mip_level,
@@ -219,7 +211,7 @@ fn sampler(gpu: &Gpu, wrap: wgpu::AddressMode) -> wgpu::Sampler {
 
 /// Uploads a texture, and binds it with its sampler.
 fn upload(gpu: &Gpu, layouts: &Layouts, texture: &TexturePixels) -> wgpu::BindGroup {
-    let (faces, dimension, wrap, layout): (&[Face], _, _, _) = match texture {
+    let (faces, dimension, wrap, layout): (&[MipChain], _, _, _) = match texture {
         TexturePixels::Flat(face) => (
             std::slice::from_ref(face),
             wgpu::TextureViewDimension::D2,

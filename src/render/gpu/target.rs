@@ -5,7 +5,7 @@ use super::pipelines::Output;
 
 /// Attachments of one size, used by one chunk after the other.
 #[derive(Debug)]
-pub struct Target {
+pub struct Attachments {
     pub size: [u32; 2],
     /// Texture that is copied to the buffer.
     pub resolved: wgpu::Texture,
@@ -15,7 +15,7 @@ pub struct Target {
     depth: wgpu::TextureView,
 }
 
-impl Target {
+impl Attachments {
     pub fn new(gpu: &Gpu, output: Output, size: [u32; 2]) -> Self {
         let make = |label, format, sample_count, usage| {
             gpu.device.create_texture(&wgpu::TextureDescriptor {

@@ -6,10 +6,10 @@ use js_sys::{Function, Reflect};
 use wasm_bindgen::closure::Closure;
 use wasm_bindgen::{JsCast as _, JsValue};
 
-use super::pending::Arrival;
+use super::map_status::MapStatus;
 
 /// Wakes the task that waits for a buffer once the event loop comes round: by `setTimeout`, which windows and workers have.
-pub fn later(arrival: &Arc<Mutex<Arrival>>) {
+pub fn later(arrival: &Arc<Mutex<MapStatus>>) {
     let arrival = arrival.clone();
     let wake = Closure::once_into_js(move || {
         let waiting = arrival.lock().unwrap_or_else(PoisonError::into_inner).waiting();

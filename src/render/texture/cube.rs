@@ -1,24 +1,24 @@
-//! Images on the sides of a cube, with what lies beyond their edges.
+//! Images on the sides of a cube, with the texels beyond their edges.
 
 use std::ops::Neg;
 
-use super::Face;
+use super::MipChain;
 
 /// A cube map.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Cube {
     /// The images on the sides +x, -x, +y, -y, +z, -z: squares of the same size.
-    pub faces: [Face; 6],
-    /// For each mip level, what lies around each side.
-    rims: Vec<[Rim; 6]>,
+    pub faces: [MipChain; 6],
+    /// The border of each side, by mip level.
+    rims: Vec<[FaceBorder; 6]>,
 }
 
 /// The texels around a side in one level: left and right of it with the corners, from the top, then above and below.
-type Rim = Vec<[u8; 4]>;
+type FaceBorder = Vec<[u8; 4]>;
 
 impl Cube {
     /// Creates a cube of images, which must be squares of the same size.
-    pub fn new(faces: [Face; 6]) -> Self {
+    pub fn new(faces: [MipChain; 6]) -> Self {
         // once: to compute where an edge leads takes ten times as long as a lookup within a side
         let rims = (0..faces[0].len())
             .map(|level| [0, 1, 2, 3, 4, 5].map(|side| rim(&faces, side, level)))
@@ -56,7 +56,7 @@ impl Cube {
 }
 
 /// Finds the texels around a side.
-fn rim(faces: &[Face; 6], side: u8, level: usize) -> Rim {
+fn rim(faces: &[MipChain; 6], side: u8, level: usize) -> FaceBorder {
     let n = faces[0][level].width as i32;
     let texel = |[x, y]: [i32; 2]| {
         let (side, index) = place(n, side, x, y);
@@ -75,7 +75,7 @@ fn rim(faces: &[Face; 6], side: u8, level: usize) -> Rim {
         let pixels = &faces[side][level].pixels;
         (0..n as isize).map(move |k| pixels[(first as isize + k * step) as usize])
     };
-    let mut rim = Rim::with_capacity(4 * (n as usize + 1));
+    let mut rim = FaceBorder::with_capacity(4 * (n as usize + 1));
     for x in [-1, n] {
         rim.push(corner(x, -1));
         rim.extend(line([[x, 0], [x, n - 1]]));
@@ -139,11 +139,11 @@ mod tests {
     use std::sync::Arc;
 
     use super::*;
-    use crate::texture::Level;
+    use crate::texture::MipLevel;
 
     /// A cube of which each texel says on which side, in which row and in which column it is.
     fn atlas(n: usize) -> Cube {
-        let face = |side: u8| Level::from_fn(n, n, |row, column| [side, row as u8, column as u8]);
+        let face = |side: u8| MipLevel::from_fn(n, n, |row, column| [side, row as u8, column as u8]);
         Cube::new([0, 1, 2, 3, 4, 5].map(|side| Arc::new(vec![face(side)])))
     }
 

@@ -1,6 +1,6 @@
 //! MuJoCo's procedural textures.
 
-use super::{Level, MARK_SEED};
+use super::{MARK_SEED, MipLevel};
 use crate::model::{Builtin, Mark, Texture as Recipe};
 
 /// Converts a colour to bytes, rounding down as MuJoCo does.
@@ -58,7 +58,7 @@ impl Mt19937 {
 }
 
 /// Draws marks.
-pub fn marked(recipe: &Recipe, mut level: Level, dice: &mut Mt19937) -> Level {
+pub fn marked(recipe: &Recipe, mut level: MipLevel, dice: &mut Mt19937) -> MipLevel {
     let (w, h) = (level.width, level.height);
     let [r, g, b] = truncated(recipe.markrgb);
     let colour = [r, g, b, 255];
@@ -86,9 +86,9 @@ fn checker(w: usize, h: usize, row: usize, column: usize) -> bool {
     (row < h / 2) == (column < w / 2)
 }
 
-pub fn flat_builtin(recipe: &Recipe, w: usize, h: usize) -> Level {
+pub fn flat_builtin(recipe: &Recipe, w: usize, h: usize) -> MipLevel {
     let (one, two) = (truncated(recipe.rgb1), truncated(recipe.rgb2));
-    let level = Level::from_fn(w, h, |row, column| match recipe.builtin {
+    let level = MipLevel::from_fn(w, h, |row, column| match recipe.builtin {
         Builtin::Gradient => {
             let (x, y) = (across(column, w), -across(row, h));
             interpolate(recipe.rgb2, recipe.rgb1, 2.0 * (x * x + y * y).sqrt() - 1.0)
@@ -99,11 +99,11 @@ pub fn flat_builtin(recipe: &Recipe, w: usize, h: usize) -> Level {
     marked(recipe, level, &mut Mt19937::new(MARK_SEED))
 }
 
-pub fn cube_builtin(recipe: &Recipe, w: usize, side: usize, dice: &mut Mt19937) -> Level {
+pub fn cube_builtin(recipe: &Recipe, w: usize, side: usize, dice: &mut Mt19937) -> MipLevel {
     use std::f64::consts::FRAC_PI_2;
     let (one, two) = (truncated(recipe.rgb1), truncated(recipe.rgb2));
     let level = match recipe.builtin {
-        Builtin::Gradient => Level::from_fn(w, w, |row, column| {
+        Builtin::Gradient => MipLevel::from_fn(w, w, |row, column| {
             let (x, y) = (across(column, w), -across(row, w));
             let steep = || 1.0 - pxfm::f_acos(1.0 / (1.0 + x * x + y * y).sqrt()) / FRAC_PI_2;
             let elevation = match side {
@@ -113,14 +113,14 @@ pub fn cube_builtin(recipe: &Recipe, w: usize, side: usize, dice: &mut Mt19937) 
             };
             interpolate(recipe.rgb1, recipe.rgb2, elevation)
         }),
-        Builtin::Checker => Level::from_fn(w, w, |row, column| {
+        Builtin::Checker => MipLevel::from_fn(w, w, |row, column| {
             if checker(w, w, row, column) == (side < 4) {
                 one
             } else {
                 two
             }
         }),
-        _ => Level::filled(w, w, if side == 3 { two } else { one }),
+        _ => MipLevel::filled(w, w, if side == 3 { two } else { one }),
     };
     marked(recipe, level, dice)
 }

@@ -12,8 +12,8 @@ fn pattern(kind: TextureType, width: usize) -> Recipe {
 
 #[test]
 fn parts_and_mirrored_images_are_those_of_the_image() {
-    let level = || Level::from_fn(3, 2, |row, column| [row as u8, column as u8, 0]);
-    let at = |level: &Level| level.pixels.iter().map(|p| 10 * p[0] + p[1]).collect::<Vec<u8>>();
+    let level = || MipLevel::from_fn(3, 2, |row, column| [row as u8, column as u8, 0]);
+    let at = |level: &MipLevel| level.pixels.iter().map(|p| 10 * p[0] + p[1]).collect::<Vec<u8>>();
     assert_eq!(at(&level()), [0, 1, 2, 10, 11, 12]);
     assert_eq!(at(&level().part(0, 1, 2)), [1, 2, 11, 12]);
     let mut flipped = level();
@@ -35,7 +35,7 @@ fn a_grid_deals_its_squares_to_the_faces_of_a_cube() {
         let text = format!("<mujoco><asset><texture file='a.png' rgb1='1 0 0' {grid}/></asset></mujoco>");
         let spec = mjcf_sim_loader::load_str(&text, "t.xml", &assets).map_err(|e| e.to_string())?;
         let recipe = spec.into_parts().0.textures.remove(0);
-        match Loader::new(&assets).texture(&recipe) {
+        match TextureLoader::new(&assets).texture(&recipe) {
             Ok(TexturePixels::Cube(cube)) => Ok(cube
                 .faces
                 .map(|face| (face[0].width, [0, 1, 2].map(|c| face[0].pixels[0][c])))),
@@ -81,7 +81,7 @@ fn four_channels_look_like_three() {
     ] {
         let (four, three) = (recipe(texture, 4).expect(texture), recipe(texture, 3).expect(texture));
         assert_eq!((four.channels, three.channels), (4, 3));
-        let mut loader = Loader::new(&assets);
+        let mut loader = TextureLoader::new(&assets);
         assert_eq!(
             loader.texture(&four).expect(texture),
             loader.texture(&three).expect(texture),
@@ -127,7 +127,7 @@ fn four_channels_look_like_three() {
 #[test]
 fn all_textures_together_have_a_limit() {
     let none = crate::assets::MemoryAssets::new();
-    let mut loader = Loader::new(&none);
+    let mut loader = TextureLoader::new(&none);
     let before = loader.left;
     let small = loader.texture(&pattern(TextureType::Flat2d, 16));
     assert!(small.is_ok());

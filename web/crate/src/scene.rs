@@ -3,7 +3,7 @@
 use babybench::Env;
 use babybench::mimo::joint_part;
 use babybench::model::{JointType, Model};
-use babybench::render::{Drawable, Element, Face, LightSource, Mesh, Scenery, Shape, TexturePixels};
+use babybench::render::{Drawable, Element, LightSource, Mesh, MipChain, Scenery, Shape, TexturePixels};
 use js_sys::{Float32Array, Uint16Array};
 use wasm_bindgen::JsValue;
 
@@ -167,7 +167,7 @@ fn texture(texture: &TexturePixels) -> JsValue {
 }
 
 /// Returns the images of a texture.
-pub fn faces(texture: &TexturePixels) -> &[Face] {
+pub fn faces(texture: &TexturePixels) -> &[MipChain] {
     match texture {
         TexturePixels::Flat(face) => std::slice::from_ref(face),
         TexturePixels::Cube(cube) => &cube.faces,

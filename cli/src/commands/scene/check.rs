@@ -6,6 +6,7 @@ use std::path::PathBuf;
 
 use babybench::config::Scene;
 use babybench::mimo::{MimoBodies, Version, embedded, unused_attributes};
+use babybench::physics::collision::PairTable;
 use babybench::{Blueprint, Config, Env, Model};
 use clap::Args;
 
@@ -96,7 +97,7 @@ fn write_reach(out: &mut impl Write, env: &Env) -> io::Result<()> {
     let model = env.model();
     let mimo = MimoBodies::of(model);
     let own = |g: usize| mimo.contains(model.geom_bodyid[g]);
-    let pairs = env.engine().pairs();
+    let pairs = PairTable::new(model);
     writeln!(out, "\nMIMo may touch")?;
     let mut none = true;
     for other in (0..model.ngeom()).filter(|&g| !own(g)) {

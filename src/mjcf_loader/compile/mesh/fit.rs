@@ -3,16 +3,16 @@
 use crate::math::{Vec3, add, norm, sub};
 use crate::model::{GeomType, Mesh};
 
-/// A shape that stands for a mesh.
-pub(in crate::compile) struct Fitted {
+/// A primitive shape that is fitted to a mesh.
+pub(in crate::compile) struct FittedShape {
     /// Size, m.
     pub size: Vec3,
-    /// Where the mesh is said to be from then on, m.
+    /// The new position of the mesh, m.
     pub pos: Vec3,
 }
 
 /// Fits a shape to a mesh: to the box with its inertia, or to the box around it; `None` for a shape that cannot be fitted.
-pub(in crate::compile) fn fit(kind: GeomType, mesh: &Mesh, to_bounds: bool, scale: f64) -> Option<Fitted> {
+pub(in crate::compile) fn fit(kind: GeomType, mesh: &Mesh, to_bounds: bool, scale: f64) -> Option<FittedShape> {
     let (size, pos) = if to_bounds {
         let [low, high] = mesh.bounds;
         let centre: Vec3 = std::array::from_fn(|k| (low[k] + high[k]) / 2.0);
@@ -22,7 +22,7 @@ pub(in crate::compile) fn fit(kind: GeomType, mesh: &Mesh, to_bounds: bool, scal
         (like_box(kind, mesh.inertia_box)?, mesh.pos)
     };
     let size = size.map(|x| x * scale);
-    Some(Fitted { size, pos })
+    Some(FittedShape { size, pos })
 }
 
 /// Returns the size of a shape from the box of the same inertia.

@@ -5,7 +5,7 @@ use crate::math::{MINVAL, Quat, Vec3, cross, dot};
 use crate::mesh::MeshInertia;
 
 /// Mass properties of a mesh, for a density of one.
-pub(super) struct Solid {
+pub(super) struct MassProperties {
     /// Volume, m^3; of a shell the area, m^2.
     pub volume: f64,
     /// Centre of mass, m.
@@ -16,10 +16,10 @@ pub(super) struct Solid {
     pub inertia_box: Vec3,
 }
 
-/// A triangle seen by sums over all.
+/// A triangle with the quantities that integrals over the mesh need.
 pub(super) struct Triangle {
     pub area: f64,
-    /// Unit normal; of a triangle without area what is left of it.
+    /// Unit normal; shorter for a triangle without area.
     pub normal: Vec3,
     centre: Vec3,
 }
@@ -64,7 +64,7 @@ fn middle(vert: &[[f32; 3]], faces: &[[u32; 3]]) -> Option<Vec3> {
     (total >= MINVAL).then(|| sum.map(|x| x / total))
 }
 
-impl Solid {
+impl MassProperties {
     /// Computes what the `counted` faces enclose, and moves the vertices to its centre. `density` scales the inertia, of which
     /// axes are found to an absolute error.
     pub fn of(
@@ -124,7 +124,7 @@ fn centre(vert: &[[f32; 3]], faces: &[[u32; 3]], kind: MeshInertia, middle: Vec3
     }
 }
 
-/// Computes the volume and the integrals of xx, yy, zz, xy, xz, yz of what is centred.
+/// Computes the volume and the integrals of xx, yy, zz, xy, xz, yz of a centred mesh.
 fn products(vert: &[[f32; 3]], faces: &[[u32; 3]], kind: MeshInertia, density: f64) -> (f64, [f64; 6]) {
     const PAIRS: [[usize; 2]; 6] = [[0, 0], [1, 1], [2, 2], [0, 1], [0, 2], [1, 2]];
     let divisor = if kind == MeshInertia::Shell { 12.0 } else { 20.0 };

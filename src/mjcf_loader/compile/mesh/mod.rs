@@ -1,4 +1,4 @@
-//! Compiles meshes: from what a file or the document says to a mesh that is centred and along its principal axes.
+//! Compiles meshes: from the triangles of a file or the document to a mesh that is centred and along its principal axes.
 //!
 //! MuJoCo 3.3.0 keeps vertices in single precision between all steps, so the same is done here, in its order of operations: then
 //! masses, inertias and poses are the same to the last bits.
@@ -12,19 +12,18 @@ mod source;
 pub(super) use fit::fit;
 pub(super) use source::{indices, rows};
 
+use super::asset_name::asset_name;
 use super::context::{Context, Ids};
-use super::surface::asset_path;
 use crate::assets::AssetSource;
 use crate::compile::geometry::normalize;
 use crate::document::Document;
-use crate::error::{ErrorKind, LoadError};
+use crate::error::LoadError;
 use crate::math::hull::quickhull;
 use crate::math::qhull;
 use crate::math::{Vec3, mat_t_vec, mat_vec, quat_to_mat};
 use crate::mesh::{Mesh, MeshInertia};
 use crate::model::{self, Arrays, GeomType, MeshHull, MeshPolygons};
-use crate::xml::Tree;
-use inertia::Solid;
+use inertia::MassProperties;
 use source::Surface;
 
 /// Compiles all meshes. Their files are looked up in `source`.
@@ -36,38 +35,21 @@ pub(super) fn compile_meshes(
     arrays: &mut Arrays,
 ) -> Result<(), LoadError> {
     let touching = touching(context, document, ids)?;
+    // for all meshes together
     let mut left = context.tree.limits.mesh_elements;
     for (mesh, touches) in document.meshes.iter().zip(touching) {
         let path = mesh
             .file
             .as_ref()
-            .map(|file| asset_path(context, mesh.at, file, [context.meshdir(mesh.at); 2], source))
+            .map(|file| context.asset_path(mesh.at, file, [context.meshdir(mesh.at); 2], source))
             .transpose()?;
         let surface = source::read(context, mesh, path.as_deref(), source, &mut left)?;
         let options = (touches, document.option.flags.multiccd, document.mesh_density);
         let compiled = compile(mesh, surface, options).map_err(|m| context.invalid(mesh.at, m))?;
-        let name = mesh_name(context.tree, mesh)?;
+        let name = asset_name(context.tree, mesh.at, &mesh.name, mesh.file.as_deref())?;
         arrays.meshes.push(model::Mesh { name, ..compiled });
     }
     Ok(())
-}
-
-/// Returns the name of a mesh; one without a name is called after its file, without directory and extension.
-pub(super) fn mesh_name(tree: &Tree, mesh: &Mesh) -> Result<String, LoadError> {
-    match stem(&mesh.name, mesh.file.as_deref()) {
-        "" => Err(tree.error(mesh.at, ErrorKind::MissingAttribute("name"))),
-        name => Ok(name.to_owned()),
-    }
-}
-
-/// Returns a name, or, where it is empty, the name of a file without directory and extension.
-pub(crate) fn stem<'n>(name: &'n str, file: Option<&'n str>) -> &'n str {
-    if !name.is_empty() {
-        return name;
-    }
-    let file = file.unwrap_or_default();
-    let stem = file.rsplit(['/', '\\']).next().unwrap_or(file);
-    stem.rsplit_once('.').map_or(stem, |(name, _)| name)
 }
 
 /// Tells which meshes need a hull: those of geoms that may touch others by their masks. Geoms that touch in a `<pair>` alone do so by all
@@ -137,7 +119,7 @@ fn compile(
         (Some(hull), MeshInertia::Convex) => &hull.face,
         _ => &face,
     };
-    let solid = Solid::of(&mut vert, &face, counted, mesh.inertia, density)?;
+    let solid = MassProperties::of(&mut vert, &face, counted, mesh.inertia, density)?;
     let bounds = turn(&mut vert, &mut normal, solid.quat);
     polygons::turn(&mut polygons, &vert);
     if let Some(hull) = &mut hull {
@@ -163,7 +145,7 @@ fn compile(
     })
 }
 
-/// Tells whether what the corners of faces name is among `count` normals or texture coordinates.
+/// Tells whether the indices of all corners are below `count`, the number of normals or texture coordinates.
 fn exist(corners: &[[u32; 3]], count: usize) -> bool {
     let mut all = corners.as_flattened().iter();
     all.all(|&i| i == model::Mesh::NONE || (i as usize) < count)
@@ -210,7 +192,7 @@ fn hull_of(points: &[Vec3]) -> Option<MeshHull> {
     Some(MeshHull::new(alive.map(|face| face.corner.map(|i| i as u32)).collect()))
 }
 
-/// Moves, turns and scales what the document says.
+/// Moves, turns and scales a mesh as the document asks.
 fn transform(mesh: &Mesh, vert: &mut [[f32; 3]], normal: &mut [[f32; 3]]) {
     if mesh.refpos != [0.0; 3] {
         let origin = mesh.refpos.map(|x| x as f32);

@@ -146,11 +146,11 @@ struct Planes {
     normal: Vec<Vec3>,
     edges: Vec<Edges>,
     root: Option<usize>,
-    node: Vec<Node>,
+    node: Vec<PlaneNode>,
 }
 
 #[derive(Clone, Copy, Default)]
-struct Node {
+struct PlaneNode {
     parent: Option<usize>,
     /// The planes before and after.
     child: [Option<usize>; 2],
@@ -196,10 +196,10 @@ impl Planes {
             return None;
         }
         let new = self.node.len();
-        self.node.push(Node {
+        self.node.push(PlaneNode {
             parent,
             red: true,
-            ..Node::default()
+            ..PlaneNode::default()
         });
         self.normal.push(normal);
         self.edges.push(Edges::default());

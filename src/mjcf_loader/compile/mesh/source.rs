@@ -106,7 +106,7 @@ fn from_file(
     })
 }
 
-/// Adds what the document itself gives, which a file must not give, too.
+/// Adds the data in the document itself. Data that the file has, too, are an error.
 fn own(mesh: &Mesh, surface: &mut Surface) -> Result<(), &'static str> {
     fill(
         &mut surface.vert,

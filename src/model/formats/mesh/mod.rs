@@ -1,6 +1,6 @@
 //! Triangle meshes in files: OBJ, STL and MSH, as MuJoCo 3.3.0 reads them.
 //!
-//! The readers take bytes from anywhere: whatever these say, a reader ends with [`Triangles`] or a [`MeshError`], and takes memory
+//! The readers take untrusted bytes: for any input, a reader ends with [`Triangles`] or a [`MeshError`], and takes memory
 //! in proportion to the file and within [`Limits::mesh_elements`]. Materials (`mtllib`) have no meaning, as in MuJoCo.
 
 mod msh;
@@ -168,7 +168,7 @@ impl Triangles {
         self.vert.len() + self.normal.len() + self.texcoord.len() + self.face.len()
     }
 
-    /// Checks that numbers are finite, and that corners name what exists. MuJoCo looks at vertices only.
+    /// Checks that numbers are finite and indices are in range. MuJoCo checks vertices only.
     pub fn check(&self) -> Result<(), MeshError> {
         let bad = |v: &[f32; 3]| !v.iter().all(|x| x.is_finite());
         if let Some(vertex) = self.vert.iter().position(bad) {

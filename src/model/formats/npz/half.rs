@@ -5,7 +5,7 @@
 pub struct Half(u16);
 
 impl Half {
-    /// Rounds to the nearest number of 16 bits, ties to even; what is too large becomes infinite.
+    /// Rounds to the nearest number of 16 bits, ties to even. Numbers that are too large become infinite.
     pub fn new(value: f32) -> Self {
         let bits = value.to_bits();
         let sign = (bits >> 16 & 0x8000) as u16;

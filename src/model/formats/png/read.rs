@@ -28,7 +28,7 @@ pub struct Picture {
 /// them.
 ///
 /// # Errors
-/// What is wrong with the picture, without its name.
+/// A description of the fault, without the name of the picture.
 pub fn decode_png(bytes: &[u8], limits: &Limits) -> Result<Picture, String> {
     let samples = Samples::of(bytes, limits)?;
     let channels = samples.channels;
@@ -59,7 +59,7 @@ pub fn check_png(bytes: &[u8], limits: &Limits) -> Result<[u32; 2], String> {
 /// taken for one that something shows through.
 ///
 /// # Errors
-/// What is wrong with the picture, without its name.
+/// A description of the fault, without the name of the picture.
 pub fn is_opaque(bytes: &[u8], limits: &Limits) -> Result<bool, String> {
     let Samples { channels, values, .. } = Samples::of(bytes, limits)?;
     let keyed = bytes.windows(4).any(|name| name == b"tRNS");

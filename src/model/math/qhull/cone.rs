@@ -1,13 +1,13 @@
 //! Facets that a new point sees, and those that join it to their border.
 
 use super::Builder;
-use super::parts::{Id, NONE, Step, Stuck, TAIL, drop_swapping, replace};
+use super::parts::{HullFailure, HullResult, Id, NONE, TAIL, drop_swapping, replace};
 use super::tolerance::{larger, smaller};
 
 impl Builder<'_> {
     /// Moves the facets that a point sees to the end of the list, in the order in which they are met from the first one on, and
     /// marks those around them that it is nearly on (`qh_findhorizon`).
-    pub(super) fn find_horizon(&mut self, point: u32, first: Id) -> Step {
+    pub(super) fn find_horizon(&mut self, point: u32, first: Id) -> HullResult {
         let p = self.point(point);
         self.renew_facet(first)?;
         self.visible_count = 1;
@@ -44,7 +44,7 @@ impl Builder<'_> {
             }
             at = self.facets[at].next;
         }
-        if border { Ok(()) } else { Err(Stuck) }
+        if border { Ok(()) } else { Err(HullFailure) }
     }
 
     fn see(&mut self, facet: Id) {
@@ -53,7 +53,7 @@ impl Builder<'_> {
     }
 
     /// Makes the facets of a new point (`qh_buildcone`): their edges, their planes, and which facets vertices belong to.
-    pub(super) fn make_cone(&mut self, point: u32) -> Step {
+    pub(super) fn make_cone(&mut self, point: u32) -> HullResult {
         self.first_new = self.facets.len() as Id;
         self.make_new_facets(point)?;
         self.match_new_facets()?;
@@ -68,7 +68,7 @@ impl Builder<'_> {
     }
 
     /// Makes a facet over each edge of the border (`qh_makenewfacets`).
-    fn make_new_facets(&mut self, point: u32) -> Step {
+    fn make_new_facets(&mut self, point: u32) -> HullResult {
         self.new_facets = TAIL;
         self.new_vertices = TAIL;
         let apex = self.new_vertex(point);
@@ -101,7 +101,7 @@ impl Builder<'_> {
     }
 
     /// Makes a facet (`qh_makenewfacet`); its vertices go to the end of their list.
-    fn make_new_facet(&mut self, vertices: Vec<Id>, top: bool, horizon: Id) -> Step<Id> {
+    fn make_new_facet(&mut self, vertices: Vec<Id>, top: bool, horizon: Id) -> HullResult<Id> {
         self.renew_vertices(&vertices)?;
         let facet = self.new_facet(vertices, top);
         self.facets[facet].neighbors.push(horizon);
@@ -111,7 +111,7 @@ impl Builder<'_> {
 
     /// Makes facets over the edges of a polygon, or of a triangle that it shares with polygons (`qh_makenew_nonsimplicial`).
     /// Returns the last one.
-    pub(super) fn cone_over_ridges(&mut self, visible: Id, apex: Id) -> Step<Id> {
+    pub(super) fn cone_over_ridges(&mut self, visible: Id, apex: Id) -> HullResult<Id> {
         let mut last = NONE;
         for ridge in self.facets[visible].ridges.clone() {
             let neighbor = self.ridges[ridge].other(visible);
@@ -125,7 +125,7 @@ impl Builder<'_> {
                 }
                 if self.facets[neighbor].seen {
                     if self.facets[neighbor].simplicial {
-                        return Err(Stuck);
+                        return Err(HullFailure);
                     }
                     self.facets[neighbor].neighbors.push(last);
                 } else {
@@ -170,7 +170,7 @@ impl Builder<'_> {
     }
 
     /// Makes facets over the edges that a triangle shares with triangles (`qh_makenew_simplicial`). Returns the last one.
-    fn cone_over_triangle(&mut self, visible: Id, apex: Id) -> Step<Id> {
+    fn cone_over_triangle(&mut self, visible: Id, apex: Id) -> HullResult<Id> {
         let mut last = NONE;
         for neighbor in self.facets[visible].neighbors.clone() {
             if self.facets[neighbor].seen || self.facets[neighbor].visible {
@@ -178,13 +178,13 @@ impl Builder<'_> {
             }
             let place = |of: Id, what: Id| {
                 let place = self.facets[of].neighbors.iter().position(|&other| other == what);
-                place.filter(|&place| place < 3).ok_or(Stuck)
+                place.filter(|&place| place < 3).ok_or(HullFailure)
             };
             let beyond = place(neighbor, visible)?;
             place(visible, neighbor)?;
             let mut vertices = self.facets[neighbor].vertices.clone();
             if beyond >= vertices.len() {
-                return Err(Stuck);
+                return Err(HullFailure);
             }
             vertices.remove(beyond);
             vertices.insert(0, apex);

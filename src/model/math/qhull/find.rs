@@ -1,12 +1,12 @@
 //! The facet that a point is highest above.
 
 use super::Builder;
-use super::parts::{Id, NONE, Step, Stuck};
+use super::parts::{HullFailure, HullResult, Id, NONE};
 use super::tolerance::larger;
 
-/// A facet, how high a point is above it, and whether it is outside.
+/// A facet, the distance of a point from its plane, and whether the point is outside.
 #[derive(Clone, Copy)]
-pub(super) struct Found {
+pub(super) struct FacetDistance {
     pub(super) facet: Id,
     pub(super) dist: f64,
     pub(super) outside: bool,
@@ -27,7 +27,7 @@ impl Builder<'_> {
 
     /// Walks from a facet to neighbours that the point is higher above (`qh_findbest`). Unless the best is asked for, the first
     /// facet that the point is outside of will do. Of new facets only new ones are walked to.
-    pub(super) fn find_best(&mut self, point: u32, start: Id, best: bool, only_new: bool) -> Step<Found> {
+    pub(super) fn find_best(&mut self, point: u32, start: Id, best: bool, only_new: bool) -> HullResult<FacetDistance> {
         let (highest, last) = self.climb(point, start, best, only_new);
         if highest.outside {
             return Ok(highest);
@@ -36,7 +36,7 @@ impl Builder<'_> {
         let mut horizon = true;
         if only_new {
             if found == NONE {
-                Found {
+                FacetDistance {
                     facet: found,
                     dist: height,
                     ..
@@ -45,7 +45,7 @@ impl Builder<'_> {
             } else if !self.not_sharp && height < -self.tolerance.dist {
                 // the walk may end at a sharp edge before it is at the best
                 if self.sharp_new_facets() {
-                    Found {
+                    FacetDistance {
                         facet: found,
                         dist: height,
                         ..
@@ -64,7 +64,7 @@ impl Builder<'_> {
         if horizon {
             (found, height) = self.find_beyond(point, found, height);
         }
-        Ok(Found {
+        Ok(FacetDistance {
             facet: found,
             dist: height,
             outside: height >= self.tolerance.outside,
@@ -73,10 +73,10 @@ impl Builder<'_> {
 
     /// Goes from facet to facet as long as the point is higher above one of the neighbours. Returns the highest that is not flipped,
     /// which counts as outside only if that ended the walk, and the facet where the walk ended.
-    fn climb(&mut self, point: u32, start: Id, best: bool, only_new: bool) -> (Found, Id) {
+    fn climb(&mut self, point: u32, start: Id, best: bool, only_new: bool) -> (FacetDistance, Id) {
         let p = self.point(point);
         let enough = if best { None } else { Some(self.tolerance.outside) };
-        let stand = |facet: Id, dist: f64| Found {
+        let stand = |facet: Id, dist: f64| FacetDistance {
             facet,
             dist,
             outside: enough.is_some_and(|enough| dist >= enough),
@@ -115,9 +115,9 @@ impl Builder<'_> {
     }
 
     /// Searches all new facets, from one on (`qh_findbestnew`), then beyond the best.
-    pub(super) fn find_best_of_new(&mut self, point: u32, start: Id, best: bool) -> Step<Found> {
+    pub(super) fn find_best_of_new(&mut self, point: u32, start: Id, best: bool) -> HullResult<FacetDistance> {
         if !Self::listed(start) {
-            return Err(Stuck);
+            return Err(HullFailure);
         }
         let p = self.point(point);
         let clearly = self.doubled(larger(2.0 * self.tolerance.outside, self.max_outside));
@@ -130,7 +130,7 @@ impl Builder<'_> {
                     if dist > height {
                         (found, height) = (facet, dist);
                         if !best && dist >= clearly {
-                            return Ok(Found {
+                            return Ok(FacetDistance {
                                 facet,
                                 dist,
                                 outside: true,
@@ -143,7 +143,7 @@ impl Builder<'_> {
         }
         let from = if found == NONE { start } else { found };
         let (facet, dist) = self.find_beyond(point, from, height);
-        Ok(Found {
+        Ok(FacetDistance {
             facet,
             dist,
             outside: dist >= self.tolerance.outside,
@@ -198,7 +198,7 @@ impl Builder<'_> {
     }
 
     /// Finds a facet that is not flipped among the neighbours of one that is, or among all (`qh_findbestlower`).
-    fn find_lower(&mut self, point: u32, flipped: Id) -> Step<(Id, f64)> {
+    fn find_lower(&mut self, point: u32, flipped: Id) -> HullResult<(Id, f64)> {
         let p = self.point(point);
         let mut best = (NONE, BELOW_ALL);
         let around = self.facets[flipped].neighbors.clone();
@@ -214,7 +214,7 @@ impl Builder<'_> {
                 }
             }
         }
-        if best.0 == NONE { Err(Stuck) } else { Ok(best) }
+        if best.0 == NONE { Err(HullFailure) } else { Ok(best) }
     }
 
     /// Tells whether normals of new facets are in several octants (`qh_sharpnewfacets`).

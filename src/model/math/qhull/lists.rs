@@ -1,7 +1,7 @@
 //! The lists of facets and of vertices. Their order decides the hull's: new and changed ones go to the end.
 
 use super::Builder;
-use super::parts::{Facet, Id, NONE, Step, Stuck, TAIL, Vertex};
+use super::parts::{Facet, HullFailure, HullResult, Id, NONE, TAIL, Vertex};
 
 impl Builder<'_> {
     /// Tells whether a place in a list is a facet or vertex, and not its end.
@@ -43,7 +43,7 @@ impl Builder<'_> {
         })
     }
 
-    /// Puts a facet at the end. Marks that stand at the end move to it, as it is the first of what they mark.
+    /// Appends a facet. Marks at the end of the list move to it, as it is the first facet behind them.
     pub(super) fn append_facet(&mut self, facet: Id) {
         if self.new_facets == TAIL {
             self.new_facets = facet;
@@ -67,9 +67,9 @@ impl Builder<'_> {
     }
 
     /// Takes a facet out of the list.
-    pub(super) fn remove_facet(&mut self, facet: Id) -> Step {
+    pub(super) fn remove_facet(&mut self, facet: Id) -> HullResult {
         if !Self::listed(facet) || self.facet_count == 0 {
-            return Err(Stuck);
+            return Err(HullFailure);
         }
         let (previous, next) = (self.facets[facet].previous, self.facets[facet].next);
         for mark in [&mut self.new_facets, &mut self.next_facet, &mut self.visible_facets] {
@@ -106,14 +106,14 @@ impl Builder<'_> {
     }
 
     /// Moves a facet to the end.
-    pub(super) fn renew_facet(&mut self, facet: Id) -> Step {
+    pub(super) fn renew_facet(&mut self, facet: Id) -> HullResult {
         self.remove_facet(facet)?;
         self.append_facet(facet);
         Ok(())
     }
 
     /// Moves a facet before the one that is worked on next.
-    pub(super) fn work_on_next(&mut self, facet: Id) -> Step {
+    pub(super) fn work_on_next(&mut self, facet: Id) -> HullResult {
         self.remove_facet(facet)?;
         self.insert_facet(facet, self.next_facet);
         self.next_facet = facet;
@@ -121,9 +121,9 @@ impl Builder<'_> {
     }
 
     /// Marks a facet for removal, with the one that takes its place: it goes before the others that are removed (`qh_willdelete`).
-    pub(super) fn will_delete(&mut self, facet: Id, replace: Id) -> Step {
+    pub(super) fn will_delete(&mut self, facet: Id, replace: Id) -> HullResult {
         if self.visible_facets == NONE && self.new_facets != NONE {
-            return Err(Stuck);
+            return Err(HullFailure);
         }
         self.remove_facet(facet)?;
         if self.visible_facets == NONE {
@@ -141,7 +141,7 @@ impl Builder<'_> {
     }
 
     /// Removes a facet for good.
-    pub(super) fn delete_facet(&mut self, facet: Id) -> Step {
+    pub(super) fn delete_facet(&mut self, facet: Id) -> HullResult {
         self.remove_facet(facet)?;
         let facet = &mut self.facets[facet];
         for set in [
@@ -176,9 +176,9 @@ impl Builder<'_> {
     }
 
     /// Takes a vertex out of the list.
-    pub(super) fn remove_vertex(&mut self, vertex: Id) -> Step {
+    pub(super) fn remove_vertex(&mut self, vertex: Id) -> HullResult {
         if !Self::listed(vertex) || self.vertex_count == 0 {
-            return Err(Stuck);
+            return Err(HullFailure);
         }
         let (previous, next) = (self.vertices[vertex].previous, self.vertices[vertex].next);
         if self.new_vertices == vertex {
@@ -195,7 +195,7 @@ impl Builder<'_> {
     }
 
     /// Moves vertices that are not yet among the new ones to the end (`qh_newvertices`).
-    pub(super) fn renew_vertices(&mut self, vertices: &[Id]) -> Step {
+    pub(super) fn renew_vertices(&mut self, vertices: &[Id]) -> HullResult {
         for &vertex in vertices {
             if !self.vertices[vertex].new {
                 self.remove_vertex(vertex)?;
@@ -227,7 +227,7 @@ impl Builder<'_> {
         all
     }
 
-    /// Forgets what is new (`qh_resetlists`), and, where asked for, what is to be removed.
+    /// Clears the list of new facets (`qh_resetlists`) and, if asked for, that of facets to be removed.
     pub(super) fn reset_lists(&mut self, visible_too: bool) {
         for vertex in self.vertices_from(self.new_vertices) {
             self.vertices[vertex].new = false;

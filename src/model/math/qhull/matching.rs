@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::Builder;
-use super::parts::{FORCED, Id, NONE, SHARED, Step, Stuck};
+use super::parts::{FORCED, HullFailure, HullResult, Id, NONE, SHARED};
 
 /// How many greatest widths two facets of a shared edge may be from each other, to be joined before others
 /// (`qh_WIDEdupridge`).
@@ -12,23 +12,23 @@ pub(super) const WIDE: f64 = 50.0;
 /// New facets by the other vertex of an edge to the apex.
 type Edges = BTreeMap<Id, Vec<Id>>;
 
-/// Two facets that may be joined, with the places of the neighbours.
-type Pair = (Id, usize, Id, usize);
+/// Two facets that may be joined, with the indices of their neighbours.
+type FacetPair = (Id, usize, Id, usize);
 
-/// The pair of facets at a shared edge that is joined, as far as it is found.
+/// The best pair of facets found so far at a shared edge.
 #[derive(Default)]
-struct Choice {
+struct FacetMatch {
     /// Facets that are not far from each other, and how far.
-    good: Option<(Pair, f64)>,
+    good: Option<(FacetPair, f64)>,
     /// If there are none, those that are farthest.
-    far: Option<(Pair, f64)>,
+    far: Option<(FacetPair, f64)>,
     /// Two facets have all vertices in common.
     duplicate: bool,
 }
 
 impl Builder<'_> {
     /// Joins new facets whose edges have the same vertices (`qh_matchnewfacets`).
-    pub(super) fn match_new_facets(&mut self) -> Step {
+    pub(super) fn match_new_facets(&mut self) -> HullResult {
         let all = self.facets_from(self.new_facets);
         for &facet in &all {
             self.facets[facet].neighbors.resize(1, NONE);
@@ -51,12 +51,12 @@ impl Builder<'_> {
                 }
             }
         }
-        if open == 0 { Ok(()) } else { Err(Stuck) }
+        if open == 0 { Ok(()) } else { Err(HullFailure) }
     }
 
     /// The vertex of an edge besides the apex, for the place of the neighbour beyond it.
-    fn edge_vertex(&self, facet: Id, skip: usize) -> Step<Id> {
-        self.facets[facet].vertices.get(3 - skip).copied().ok_or(Stuck)
+    fn edge_vertex(&self, facet: Id, skip: usize) -> HullResult<Id> {
+        self.facets[facet].vertices.get(3 - skip).copied().ok_or(HullFailure)
     }
 
     /// Which neighbour of a facet is beyond the edge to a vertex.
@@ -76,7 +76,7 @@ impl Builder<'_> {
 
     /// Joins a facet at an edge to the one that waits there, or makes it wait; a third one makes the edge shared
     /// (`qh_matchneighbor`). Returns by how much the number of open edges grows.
-    fn match_edge(&mut self, edges: &mut Edges, facet: Id, skip: usize) -> Step<isize> {
+    fn match_edge(&mut self, edges: &mut Edges, facet: Id, skip: usize) -> HullResult<isize> {
         let waiting = edges.entry(self.edge_vertex(facet, skip)?).or_default();
         let Some(&first) = waiting.iter().find(|&&other| other != facet) else {
             if !waiting.contains(&facet) {
@@ -98,7 +98,7 @@ impl Builder<'_> {
             self.share(first, place);
             if partner != NONE {
                 let place = self.facets[partner].neighbors.iter().position(|&other| other == first);
-                self.share(partner, place.ok_or(Stuck)?);
+                self.share(partner, place.ok_or(HullFailure)?);
                 if !waiting.contains(&partner) {
                     waiting.push(partner);
                 }
@@ -115,11 +115,11 @@ impl Builder<'_> {
 
     /// Joins the facets of a shared edge in pairs (`qh_matchdupridge`): first those that are nearest to each other, or else those
     /// that are farthest; the others are to be merged. Returns how many open edges that closes.
-    fn match_shared(&mut self, edges: &Edges, at: Id, skip: usize) -> Step<isize> {
+    fn match_shared(&mut self, edges: &Edges, at: Id, skip: usize) -> HullResult<isize> {
         let vertex = self.edge_vertex(at, skip)?;
-        let waiting = edges.get(&vertex).ok_or(Stuck)?;
+        let waiting = edges.get(&vertex).ok_or(HullFailure)?;
         let choice = self.choose_pair(waiting, vertex, at)?;
-        let (a, place_a, b, place_b) = choice.good.or(choice.far).ok_or(Stuck)?.0;
+        let (a, place_a, b, place_b) = choice.good.or(choice.far).ok_or(HullFailure)?.0;
         self.facets[a].neighbors[place_a] = b;
         self.facets[b].neighbors[place_b] = a;
         let mut closed = 2;
@@ -149,7 +149,7 @@ impl Builder<'_> {
                 }
             }
             if self.facets[facet].neighbors[skip] == SHARED {
-                return Err(Stuck);
+                return Err(HullFailure);
             }
             facet = next;
         }
@@ -167,8 +167,8 @@ impl Builder<'_> {
     }
 
     /// Looks through the consistent pairs at a shared edge.
-    fn choose_pair(&mut self, waiting: &[Id], vertex: Id, at: Id) -> Step<Choice> {
-        let mut choice = Choice::default();
+    fn choose_pair(&mut self, waiting: &[Id], vertex: Id, at: Id) -> HullResult<FacetMatch> {
+        let mut choice = FacetMatch::default();
         self.visit += 1;
         let mut facet = at;
         while facet != NONE {
@@ -177,7 +177,7 @@ impl Builder<'_> {
             for (other, place) in others {
                 choice.duplicate |= self.facets[facet].vertices.get(skip) == self.facets[other].vertices.get(place);
                 if self.facets[other].neighbors[place] != SHARED {
-                    return Err(Stuck);
+                    return Err(HullFailure);
                 }
                 if !self.consistent((facet, skip), (other, place)) {
                     next = other;
@@ -194,7 +194,7 @@ impl Builder<'_> {
     }
 
     /// Keeps a pair if it is better than the one that was found.
-    fn weigh_pair(&mut self, choice: &mut Choice, pair: Pair) -> Step {
+    fn weigh_pair(&mut self, choice: &mut FacetMatch, pair: FacetPair) -> HullResult {
         let (a, place_a, b, place_b) = pair;
         for facet in [a, b] {
             if self.facets[facet].normal.is_none() {

@@ -24,7 +24,7 @@ mod triangulate;
 mod vertices;
 
 use super::Vec3;
-use parts::{Arena, Facet, Id, Merge, NONE, Ridge, Step, TAIL, Vertex, VertexMerge};
+use parts::{Arena, Facet, HullResult, Id, Merge, NONE, Ridge, TAIL, Vertex, VertexMerge};
 use tolerance::{Tolerance, larger};
 
 /// A hull of triangles.
@@ -131,7 +131,7 @@ impl<'p> Builder<'p> {
     }
 
     /// Adds the farthest points, one by one, until none is outside, or until there are `most` corners.
-    fn build(&mut self, extremes: &[u32], most: Option<usize>) -> Step {
+    fn build(&mut self, extremes: &[u32], most: Option<usize>) -> HullResult {
         self.bound_outside();
         let corners = self.first_hull(extremes)?;
         self.partition_all(&corners)?;
@@ -156,7 +156,7 @@ impl<'p> Builder<'p> {
 
     /// Adds a point to the hull (`qh_addpoint`): facets that it sees go, new ones join their border to it, what is not convex is
     /// merged, and points of the facets that went are handed on.
-    fn add_point(&mut self, point: u32, facet: Id) -> Step {
+    fn add_point(&mut self, point: u32, facet: Id) -> HullResult {
         self.bound_outside();
         self.find_horizon(point, facet)?;
         self.make_cone(point)?;
@@ -176,7 +176,7 @@ impl<'p> Builder<'p> {
     }
 
     /// Removes facets and vertices that are to be removed (`qh_deletevisible`).
-    fn delete_visible(&mut self) -> Step {
+    fn delete_visible(&mut self) -> HullResult {
         for facet in self.visible() {
             self.delete_facet(facet)?;
         }

@@ -1,8 +1,8 @@
 //! Points that are handed to the facets that they are above.
 
 use super::Builder;
-use super::find::Found;
-use super::parts::{Id, NONE, Step, Stuck, push_second_last};
+use super::find::FacetDistance;
+use super::parts::{HullFailure, HullResult, Id, NONE, push_second_last};
 
 /// How many times the greatest width a coplanar point may be above before it counts as outside (`qh_RATIOcoplanaroutside`).
 const COPLANAR_OUTSIDE: f64 = 30.0;
@@ -46,19 +46,19 @@ impl Builder<'_> {
     }
 
     /// Hands a point to the facet that it is highest above, or at, or drops it (`qh_partitionpoint`).
-    pub(super) fn partition_point(&mut self, point: u32, facet: Id) -> Step {
+    pub(super) fn partition_point(&mut self, point: u32, facet: Id) -> HullResult {
         let found = if self.find_best_new {
             self.find_best_of_new(point, facet, false)?
         } else {
             self.find_best(point, facet, false, true)?
         };
-        let Found {
+        let FacetDistance {
             facet: best,
             dist,
             mut outside,
         } = found;
         if self.facets[best].visible {
-            return Err(Stuck);
+            return Err(HullFailure);
         }
         if self.narrow && dist >= -self.tolerance.near_inside {
             outside = true;
@@ -73,7 +73,7 @@ impl Builder<'_> {
     }
 
     /// Puts a point among those outside a facet. A facet that has its first such point is worked on later.
-    fn put_outside(&mut self, point: u32, facet: Id, dist: f64) -> Step {
+    fn put_outside(&mut self, point: u32, facet: Id, dist: f64) -> HullResult {
         let (narrow, least) = (self.narrow, self.tolerance.outside);
         let entry = &mut self.facets[facet];
         let mut first = false;
@@ -105,7 +105,7 @@ impl Builder<'_> {
 
     /// Puts a point among those at a facet (`qh_partitioncoplanar`); without a distance the best facet is looked for, among
     /// all new ones or by a walk. What turns out to be far above is outside.
-    pub(super) fn partition_coplanar(&mut self, point: u32, facet: Id, dist: Option<f64>, all_new: bool) -> Step {
+    pub(super) fn partition_coplanar(&mut self, point: u32, facet: Id, dist: Option<f64>, all_new: bool) -> HullResult {
         let (best, height) = match dist {
             Some(dist) => (facet, dist),
             None => {
@@ -122,14 +122,14 @@ impl Builder<'_> {
             }
         };
         if self.facets[best].visible {
-            return Err(Stuck);
+            return Err(HullFailure);
         }
         if height > self.max_outside {
             let mut outside = dist.is_none() && facet != best && self.cosine(facet, best) < 0.0;
             if !outside && height > self.most_outside * COPLANAR_OUTSIDE {
                 if facet == best {
                     if facet == self.repartitioned {
-                        return Err(Stuck); // it would go on for ever
+                        return Err(HullFailure); // it would go on for ever
                     }
                     self.repartitioned = facet;
                 }
@@ -157,7 +157,7 @@ impl Builder<'_> {
     }
 
     /// Returns the facet that stands for one that was removed (`qh_getreplacement`).
-    pub(super) fn replacement(&self, facet: Id) -> Step<Id> {
+    pub(super) fn replacement(&self, facet: Id) -> HullResult<Id> {
         let mut at = facet;
         for _ in 0..=self.facets.len() {
             if at == NONE || !self.facets[at].visible {
@@ -165,11 +165,11 @@ impl Builder<'_> {
             }
             at = self.facets[at].replace;
         }
-        Err(Stuck)
+        Err(HullFailure)
     }
 
     /// Hands on the points of the facets that are removed, and of the vertices that are (`qh_partitionvisible`).
-    pub(super) fn partition_visible(&mut self) -> Step {
+    pub(super) fn partition_visible(&mut self) -> HullResult {
         for facet in self.visible() {
             if self.facets[facet].outside.is_empty() && self.facets[facet].coplanar.is_empty() {
                 continue;
@@ -179,7 +179,7 @@ impl Builder<'_> {
                 heir = self.new_facets;
             }
             if !Self::listed(heir) {
-                return Err(Stuck);
+                return Err(HullFailure);
             }
             for point in std::mem::take(&mut self.facets[facet].outside) {
                 self.partition_point(point, heir)?;

@@ -4,7 +4,7 @@ use std::ops::{Index, IndexMut};
 
 use crate::math::Vec3;
 
-/// Place of a facet, a vertex or a ridge in its arena. Later ones have greater places, as Qhull's numbers do.
+/// The index of a facet, a vertex or a ridge in its arena. Later ones have greater indices, as Qhull's ids do.
 pub(super) type Id = u32;
 /// No facet, vertex or ridge.
 pub(super) const NONE: Id = u32::MAX;
@@ -15,14 +15,14 @@ pub(super) const FORCED: Id = u32::MAX - 2;
 /// The end of the lists of facets and of vertices: the first entry of either arena is not part of the hull.
 pub(super) const TAIL: Id = 0;
 
-/// The hull cannot be built in Qhull's way: what Qhull itself ends with an error for.
+/// The input cannot be processed in Qhull's way. Qhull itself exits with an error for it.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Stuck;
+pub(super) struct HullFailure;
 
-/// Result of a step that may be stuck.
-pub(super) type Step<T = ()> = Result<T, Stuck>;
+/// Result of an operation that may fail.
+pub(super) type HullResult<T = ()> = Result<T, HullFailure>;
 
-/// Things that are never removed, so that a place keeps its meaning.
+/// A list whose items are never removed, so an index stays valid.
 pub(super) struct Arena<T>(Vec<T>);
 
 impl<T: Default> Arena<T> {
@@ -43,7 +43,7 @@ impl<T: Default> Arena<T> {
     }
 }
 
-/// A place that is none gives the end of the list: whatever a set holds, nothing panics, and the finished hull is checked.
+/// An invalid index yields the end of the list, so malformed sets never panic. The finished hull is checked.
 impl<T> Index<Id> for Arena<T> {
     type Output = T;
 
@@ -85,7 +85,7 @@ pub(super) struct Facet {
     pub(super) center: Option<Vec3>,
     /// How high the last of `outside` is.
     pub(super) furthest: f64,
-    /// How far a point may be above, from what is known.
+    /// Bound on the distance of points above the facet, as far as known.
     pub(super) max_outside: f64,
     /// Facet that stands for it after it was removed.
     pub(super) replace: Id,
@@ -162,9 +162,9 @@ impl Ridge {
     }
 }
 
-/// Why two facets are merged, in the order in which merges are sorted: the first is done first.
+/// The reason for merging two facets. Merges are done in this order.
 #[derive(Clone, Copy, Debug, PartialEq, PartialOrd)]
-pub(super) enum Reason {
+pub(super) enum MergeReason {
     /// Centres are at the other's plane.
     Coplanar,
     /// A centre is above the other's plane.
@@ -185,16 +185,16 @@ pub(super) enum Reason {
     Horizon,
 }
 
-/// A merge that is to be done.
+/// A pending merge.
 #[derive(Clone, Copy)]
 pub(super) struct Merge {
     pub(super) facet1: Id,
     pub(super) facet2: Id,
-    pub(super) reason: Reason,
+    pub(super) reason: MergeReason,
     pub(super) distance: f64,
 }
 
-/// A merge of a vertex with one beside it, as two edges join the same vertices.
+/// A merge of two neighbouring vertices that two edges join.
 #[derive(Clone, Copy)]
 pub(super) struct VertexMerge {
     pub(super) vertex: Id,
@@ -220,8 +220,8 @@ pub(super) fn drop_sorted(set: &mut Vec<Id>, item: Id) {
 }
 
 /// Puts an item in the place of another (`qh_setreplace`).
-pub(super) fn replace(set: &mut [Id], old: Id, new: Id) -> Step {
-    let place = set.iter_mut().find(|other| **other == old).ok_or(Stuck)?;
+pub(super) fn replace(set: &mut [Id], old: Id, new: Id) -> HullResult {
+    let place = set.iter_mut().find(|other| **other == old).ok_or(HullFailure)?;
     *place = new;
     Ok(())
 }

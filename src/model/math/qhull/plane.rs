@@ -1,7 +1,7 @@
 //! Planes of facets, distances from them, and their centres.
 
 use super::Builder;
-use super::parts::{Id, Step, Stuck};
+use super::parts::{HullFailure, HullResult, Id};
 use super::tolerance::{SMALLEST, divide};
 use crate::math::Vec3;
 
@@ -113,9 +113,9 @@ impl Builder<'_> {
 
     /// Computes the plane of a triangle (`qh_setfacetplane`): by its cross product, and by elimination where a corner is off the
     /// plane by more than the rounding error.
-    pub(super) fn set_plane(&mut self, facet: Id) -> Step {
+    pub(super) fn set_plane(&mut self, facet: Id) -> HullResult {
         let &[v0, v1, v2] = self.facets[facet].vertices.as_slice() else {
-            return Err(Stuck);
+            return Err(HullFailure);
         };
         let [p0, p1, p2] = [v0, v1, v2].map(|v| self.place(v));
         let top = self.facets[facet].top;
@@ -143,7 +143,7 @@ impl Builder<'_> {
         self.facets[facet].normal = Some(normal);
         self.facets[facet].offset = offset;
         if small {
-            // the sign of what is nearly zero says nothing, the point inside does
+            // the sign of a number that is nearly zero is meaningless; the interior point decides
             self.orient_outside(facet);
         }
         self.check_flipped(facet);

@@ -1,11 +1,11 @@
 //! The first four corners, and the facets between them.
 
 use super::Builder;
-use super::parts::{Id, NONE, Step, Stuck, TAIL};
+use super::parts::{HullFailure, HullResult, Id, NONE, TAIL};
 use super::tolerance::larger;
 use crate::math::Vec3;
 
-/// How small a determinant may be against what it could be before all points are searched (`qh_RATIOmaxsimplex`).
+/// The least ratio of a determinant to its largest possible value; below it all points are searched (`qh_RATIOmaxsimplex`).
 const SMALL_DETERMINANT: f64 = 1e-3;
 /// The cosine of two facets of a needle (`qh_MAXnarrow`).
 const NARROW: f64 = -0.99999999;
@@ -52,9 +52,9 @@ impl Builder<'_> {
 
     /// Chooses four points: the two farthest along x, then those that make the greatest determinants, among the extremes first
     /// (`qh_maxsimplex`).
-    fn first_corners(&self, extremes: &[u32]) -> Step<Vec<u32>> {
+    fn first_corners(&self, extremes: &[u32]) -> HullResult<Vec<u32>> {
         let x = |point: u32| self.point(point)[0];
-        let [mut low, mut high] = [*extremes.first().ok_or(Stuck)?; 2];
+        let [mut low, mut high] = [*extremes.first().ok_or(HullFailure)?; 2];
         for &point in extremes {
             if x(high) < x(point) {
                 high = point;
@@ -64,7 +64,7 @@ impl Builder<'_> {
             }
         }
         if low == high {
-            return Err(Stuck);
+            return Err(HullFailure);
         }
         let mut simplex = vec![low, high];
         let mut greatest = x(high) - x(low);
@@ -97,7 +97,7 @@ impl Builder<'_> {
                 }
             }
             if best == NONE {
-                return Err(Stuck);
+                return Err(HullFailure);
             }
             simplex.push(best);
         }
@@ -105,7 +105,7 @@ impl Builder<'_> {
     }
 
     /// Builds the simplex, with facets that wind the right way, and the point inside (`qh_initialhull`).
-    pub(super) fn first_hull(&mut self, extremes: &[u32]) -> Step<Vec<u32>> {
+    pub(super) fn first_hull(&mut self, extremes: &[u32]) -> HullResult<Vec<u32>> {
         let corners = self.first_corners(extremes)?;
         let mut vertices: Vec<Id> = corners.iter().map(|&point| self.new_vertex(point)).collect();
         vertices.reverse();
@@ -114,7 +114,7 @@ impl Builder<'_> {
         self.next_facet = self.first_facet;
         self.interior = self.mean(&vertices);
         let all = self.facets_from(self.first_facet);
-        let first = *all.first().ok_or(Stuck)?;
+        let first = *all.first().ok_or(HullFailure)?;
         self.set_plane(first)?;
         self.facets[first].flipped = false;
         if self.distance(self.interior, first) > self.tolerance.dist {
@@ -131,7 +131,7 @@ impl Builder<'_> {
     }
 
     /// Turns all facets where one is not below the point inside; notes whether the hull is a needle.
-    fn orient_first(&mut self, all: &[Id]) -> Step {
+    fn orient_first(&mut self, all: &[Id]) -> HullResult {
         for &facet in all {
             self.facets[facet].flipped = false;
             if self.distance(self.interior, facet) > self.tolerance.dist {
@@ -146,7 +146,7 @@ impl Builder<'_> {
         let mut least = f64::MAX;
         for &facet in all {
             if !self.check_flipped(facet) {
-                return Err(Stuck); // the simplex is flat
+                return Err(HullFailure); // the simplex is flat
             }
             for &neighbor in &self.facets[facet].neighbors {
                 let cosine = self.cosine(facet, neighbor);
@@ -160,7 +160,7 @@ impl Builder<'_> {
     }
 
     /// Makes four facets, each without one of the vertices (`qh_createsimplex`).
-    fn create_simplex(&mut self, vertices: &[Id]) -> Step {
+    fn create_simplex(&mut self, vertices: &[Id]) -> HullResult {
         let mut top = true;
         for (i, &vertex) in vertices.iter().enumerate() {
             let mut others = vertices.to_vec();
@@ -174,12 +174,12 @@ impl Builder<'_> {
         for &facet in &all {
             self.facets[facet].neighbors = all.iter().copied().filter(|&other| other != facet).collect();
         }
-        if all.len() == 4 { Ok(()) } else { Err(Stuck) }
+        if all.len() == 4 { Ok(()) } else { Err(HullFailure) }
     }
 
-    /// Hands every point to the first facet that it is clearly above, and what is left to the facet that it is nearest to
+    /// Assigns every point to the first facet that it is clearly above, and each of the others to the nearest facet
     /// (`qh_partitionall`).
-    pub(super) fn partition_all(&mut self, corners: &[u32]) -> Step {
+    pub(super) fn partition_all(&mut self, corners: &[u32]) -> HullResult {
         let mut left: Vec<u32> = (0..self.points.len() as u32).collect();
         left.retain(|point| !corners.contains(point));
         let clearly = larger(2.0 * self.tolerance.outside, self.max_outside);
@@ -219,7 +219,7 @@ impl Builder<'_> {
     }
 
     /// Begins with the facet that the farthest point is above (`qh_furthestnext`).
-    pub(super) fn begin_farthest(&mut self) -> Step {
+    pub(super) fn begin_farthest(&mut self) -> HullResult {
         self.next_facet = self.first_facet;
         let mut best = (TAIL, f64::MIN);
         for facet in self.facets_from(self.first_facet) {

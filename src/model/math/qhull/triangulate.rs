@@ -1,11 +1,11 @@
 //! Polygons that are split into triangles (`qh_triangulate`, option `Qt`).
 
 use super::Builder;
-use super::parts::{Id, Merge, NONE, Reason, Step, Stuck, TAIL, replace};
+use super::parts::{HullFailure, HullResult, Id, Merge, MergeReason, NONE, TAIL, replace};
 
 impl Builder<'_> {
     /// Splits every polygon into triangles that stand for it in the list, after all that are triangles.
-    pub(super) fn triangulate(&mut self) -> Step {
+    pub(super) fn triangulate(&mut self) -> HullResult {
         self.visit += 1;
         self.new_vertices = TAIL;
         let (mut first_facet, mut first_vertex) = (NONE, NONE);
@@ -38,7 +38,7 @@ impl Builder<'_> {
     }
 
     /// Makes a triangle over each edge of a polygon from its latest vertex (`qh_triangulate_facet`).
-    fn split(&mut self, polygon: Id, first_vertex: &mut Id) -> Step {
+    fn split(&mut self, polygon: Id, first_vertex: &mut Id) -> HullResult {
         self.first_new = self.facets.len() as Id;
         for neighbor in self.facets[polygon].neighbors.clone() {
             self.facets[neighbor].seen = false;
@@ -46,7 +46,7 @@ impl Builder<'_> {
         }
         (self.visible_facets, self.new_facets) = (TAIL, TAIL);
         self.facets[polygon].visit = self.visit;
-        let apex = *self.facets[polygon].vertices.first().ok_or(Stuck)?;
+        let apex = *self.facets[polygon].vertices.first().ok_or(HullFailure)?;
         self.cone_over_ridges(polygon, apex)?;
         self.will_delete(polygon, NONE)?;
         let (normal, offset) = (self.facets[polygon].normal, self.facets[polygon].offset);
@@ -66,7 +66,7 @@ impl Builder<'_> {
     }
 
     /// Removes triangles over the two edges that meet at the polygon's own apex, and pairs of triangles with the same vertices.
-    fn drop_null_triangles(&mut self, first: Id) -> Step {
+    fn drop_null_triangles(&mut self, first: Id) -> HullResult {
         for facet in self.facets_from(first) {
             if self.facets[facet].visible {
                 continue;
@@ -75,7 +75,7 @@ impl Builder<'_> {
             let vertices = &self.facets[facet].vertices;
             if vertices.first() == vertices.get(1) {
                 let &[a, b, ..] = self.facets[facet].neighbors.as_slice() else {
-                    return Err(Stuck);
+                    return Err(HullFailure);
                 };
                 self.link(facet, a, facet, b)?;
                 self.will_delete(facet, NONE)?;
@@ -86,7 +86,7 @@ impl Builder<'_> {
             facet1, facet2, reason, ..
         }) = self.degenerates.pop()
         {
-            if reason == Reason::Mirror {
+            if reason == MergeReason::Mirror {
                 self.drop_mirrored(facet1, facet2)?;
             }
         }
@@ -94,28 +94,28 @@ impl Builder<'_> {
     }
 
     /// Makes two facets neighbours, in the places of those between them (`qh_triangulate_link`).
-    fn link(&mut self, old_a: Id, a: Id, old_b: Id, b: Id) -> Step {
+    fn link(&mut self, old_a: Id, a: Id, old_b: Id, b: Id) -> HullResult {
         let mutual = self.facets[a].neighbors.contains(&b);
         if mutual != self.facets[b].neighbors.contains(&a) {
-            return Err(Stuck);
+            return Err(HullFailure);
         }
         if mutual {
             // two triangles that have two edges in common have all vertices in common
             let marked = self.facets[a].redundant && self.facets[b].redundant && self.mirrors(a, b);
             if !marked {
                 if self.facets[a].vertices != self.facets[b].vertices {
-                    return Err(Stuck);
+                    return Err(HullFailure);
                 }
                 if !self.facets[b].redundant {
                     if self.facets[a].redundant {
-                        return Err(Stuck);
+                        return Err(HullFailure);
                     }
                     self.facets[a].redundant = true;
                     self.facets[b].redundant = true;
                     self.degenerates.push(Merge {
                         facet1: a,
                         facet2: b,
-                        reason: Reason::Mirror,
+                        reason: MergeReason::Mirror,
                         distance: 0.0,
                     });
                 }
@@ -129,14 +129,14 @@ impl Builder<'_> {
         let both = |merge: &Merge| [(a, b), (b, a)].contains(&(merge.facet1, merge.facet2));
         self.degenerates
             .iter()
-            .any(|merge| merge.reason == Reason::Mirror && both(merge))
+            .any(|merge| merge.reason == MergeReason::Mirror && both(merge))
     }
 
-    /// Removes two triangles with the same vertices, and joins what is beyond them (`qh_triangulate_mirror`).
-    fn drop_mirrored(&mut self, a: Id, b: Id) -> Step {
+    /// Removes two triangles with the same vertices, and joins their neighbours (`qh_triangulate_mirror`).
+    fn drop_mirrored(&mut self, a: Id, b: Id) -> HullResult {
         for i in 0..self.facets[a].neighbors.len() {
             let near = self.facets[a].neighbors[i];
-            let far = *self.facets[b].neighbors.get(i).ok_or(Stuck)?;
+            let far = *self.facets[b].neighbors.get(i).ok_or(HullFailure)?;
             if near == b && far == a {
                 continue;
             }

@@ -1,6 +1,6 @@
-//! Which geoms may touch, and in which order their contacts stand; linear in the size of the model.
+//! Rules that decide which geoms may touch, and the order of their contacts. Memory is linear in the size of the model.
 
-use super::Order;
+use super::PairOrder;
 use crate::math::order;
 use crate::model::{GeomType, Model};
 
@@ -16,7 +16,7 @@ struct Geom {
     weld_parent: u32,
 }
 
-/// Which geoms of a model may touch; see [`super::PairTable`].
+/// The rules of a model that decide which geoms may touch; see [`super::PairTable`].
 #[derive(Clone, Debug)]
 pub struct ContactRules {
     /// Whether geoms of a body pass through those of its parent.
@@ -95,13 +95,14 @@ impl ContactRules {
 
     /// Orders two geoms by type, then by body.
     pub(super) fn ordered(&self, a: usize, b: usize) -> [usize; 2] {
+        // the routines of contacts take the lower type first
         let key = |g: usize| (self.geoms[g].kind, self.geoms[g].body, g);
         if key(a) <= key(b) { [a, b] } else { [b, a] }
     }
 
     /// Returns the places of the pairs of two geoms in contact order; none if they may not touch. An explicit pair stands
     /// for what their own properties say.
-    pub(super) fn orders(&self, a: usize, b: usize) -> impl Iterator<Item = Order> {
+    pub(super) fn orders(&self, a: usize, b: usize) -> impl Iterator<Item = PairOrder> {
         let mut explicit = self.explicit(a, b).peekable();
         let dynamic = if explicit.peek().is_none() {
             self.dynamic_order(a, b)
@@ -114,7 +115,7 @@ impl ContactRules {
     }
 
     /// Returns the place in contact order of two geoms that are not an explicit pair, if they may touch.
-    pub(super) fn dynamic_order(&self, a: usize, b: usize) -> Option<Order> {
+    pub(super) fn dynamic_order(&self, a: usize, b: usize) -> Option<PairOrder> {
         self.collide(a, b).then(|| {
             let [lo, hi] = self.bodies(a, b);
             let [x, y] = if self.midphase {
@@ -129,7 +130,7 @@ impl ContactRules {
     }
 
     /// Returns the place of an explicit pair in contact order.
-    pub(super) fn explicit_order(&self, p: usize, a: usize, b: usize) -> Order {
+    pub(super) fn explicit_order(&self, p: usize, a: usize, b: usize) -> PairOrder {
         let [lo, hi] = self.bodies(a, b);
         (lo, hi, false, p as u32, 0)
     }
@@ -142,15 +143,18 @@ impl ContactRules {
     fn collide(&self, a: usize, b: usize) -> bool {
         let (x, y) = (&self.geoms[a], &self.geoms[b]);
         let flat = |kind: GeomType| matches!(kind, GeomType::Plane | GeomType::HField);
+        // MuJoCo has no routine for two of these
         if flat(x.kind) && flat(y.kind) {
             return false;
         }
         if x.contype & y.conaffinity == 0 && y.contype & x.conaffinity == 0 {
             return false;
         }
+        // bodies that never move against each other, as all do that are fixed to the world
         if x.weld == y.weld {
             return false;
         }
+        // neighbours overlap at their joint. Children of the world are no neighbours of it, or nothing could stand on a floor.
         if self.filterparent && x.weld != 0 && y.weld != 0 && (x.weld == y.weld_parent || y.weld == x.weld_parent) {
             return false;
         }

@@ -1,17 +1,18 @@
 //! The matrix and the right side of the dual problem.
 
-use super::{Dual, product};
+use super::{DualSolver, product};
 use crate::constraint::Efc;
 use crate::dynamics::Articulated;
-use crate::engine::{EngineError, within};
+use crate::error::{EngineError, within};
 use crate::limits::Limits;
 use crate::model::Model;
 use crate::state::State;
 use crate::topology::Topology;
 use crate::vectorize::vectorized;
 
-impl Dual {
+impl DualSolver {
     /// Computes the matrix and the right side.
+    #[doc(alias = "mj_projectConstraint")]
     pub(super) fn prepare(
         &mut self,
         model: &Model,

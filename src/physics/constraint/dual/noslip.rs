@@ -1,10 +1,10 @@
 //! The solver against slip: friction without regularisation, which cannot creep, at the normal forces that another solver found.
 
-use super::{CONE_ROWS, Dual, product, scale, settle};
+use super::{CONE_ROWS, DualSolver, product, scale, settle};
 use crate::constraint::friction::{DIRECTIONS, Quadratic};
 use crate::constraint::{Block, ConstraintType, Efc};
 use crate::dynamics::Articulated;
-use crate::engine::EngineError;
+use crate::error::EngineError;
 use crate::math::MINVAL;
 use crate::model::Model;
 use crate::state::State;
@@ -14,12 +14,13 @@ use crate::vectorize::vectorized;
 /// Least diagonal entry of the matrix of a contact's friction, 1/kg, as in MuJoCo.
 const LEAST: f64 = 1e-10;
 
-impl Dual {
+impl DualSolver {
     /// Changes the forces of dry friction and of friction of contacts, after another solver (MuJoCo's `mj_solNoSlip`), and
     /// `qacc, qfrc_constraint` with them; the start of the next step's solver stays. `bodies` must be up to date.
     ///
     /// # Errors
     /// More numbers in the matrices than [`Limits::dual_numbers`](mjcf_sim_model::Limits::dual_numbers).
+    #[doc(alias = "mj_solNoSlip")]
     pub fn hold(
         &mut self,
         model: &Model,

@@ -40,7 +40,7 @@ impl Hessian {
     }
 }
 
-/// Returns the first `len` entries of a vector, which grows where it is shorter: what is in it is written over.
+/// Returns the first `len` entries of a vector, which grows if it is shorter. Callers overwrite the contents.
 #[inline(always)]
 fn room(v: &mut Vec<Lanes>, len: usize) -> &mut [Lanes] {
     if v.len() < len {

@@ -6,9 +6,9 @@ use crate::math::*;
 use crate::model::{Model, ObjType, SensorType};
 use crate::state::State;
 
-/// The working memory of these sensors, which is only there where a model has one.
+/// Buffers of distance sensors, allocated only if a model has one.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Between {
+pub(super) struct DistanceScratch {
     scratch: Option<Scratch>,
     points: Vec<ContactPoint>,
 }
@@ -22,7 +22,7 @@ fn geoms(model: &Model, kind: ObjType, id: Option<usize>) -> std::ops::Range<usi
     }
 }
 
-impl Between {
+impl DistanceScratch {
     /// Returns the value of a sensor, with zeros behind it.
     pub fn value(&mut self, model: &Model, s: &State, sensor: usize) -> [f64; 6] {
         let scratch = self.scratch.get_or_insert_with(Scratch::new);

@@ -6,6 +6,7 @@ use crate::spatial::*;
 use crate::state::State;
 
 /// Returns the energy of heights, and of the springs of joints and tendons, J.
+#[doc(alias = "mj_energyPos")]
 pub(super) fn potential(model: &Model, s: &State) -> f64 {
     let weights = (1..model.nbody()).map(|b| s.params.body_mass[b] * dot(s.params.gravity, s.xipos[b]));
     let mut energy = -weights.sum::<f64>();
@@ -42,6 +43,7 @@ pub(super) fn potential(model: &Model, s: &State) -> f64 {
 }
 
 /// Returns the energy of motion, J, that of the rotors of motors included.
+#[doc(alias = "mj_energyVel")]
 pub(super) fn kinetic(model: &Model, s: &State) -> f64 {
     let bodies = (1..model.nbody()).map(|b| dot6(&s.cvel[b], &inertia_mul(&s.cinert[b], &s.cvel[b])));
     let rotors = s

@@ -7,15 +7,15 @@ use crate::spatial::*;
 use crate::state::State;
 
 /// An object that has a frame.
-struct Framed {
+struct FrameObject {
     body: usize,
     pos: Vec3,
     mat: Mat3,
     quat: Quat,
 }
 
-/// Returns where an object is; nothing for what has no frame.
-fn framed(model: &Model, s: &State, kind: ObjType, id: Option<usize>) -> Option<Framed> {
+/// Returns the pose of an object; `None` if it has no frame.
+fn framed(model: &Model, s: &State, kind: ObjType, id: Option<usize>) -> Option<FrameObject> {
     let id = id?;
     let (body, pos, mat, own) = match kind {
         ObjType::XBody => (id, s.xpos[id], s.xmat[id], QUAT_ID),
@@ -41,7 +41,7 @@ fn framed(model: &Model, s: &State, kind: ObjType, id: Option<usize>) -> Option<
     } else {
         quat_mul(s.xquat[body], own)
     };
-    Some(Framed { body, pos, mat, quat })
+    Some(FrameObject { body, pos, mat, quat })
 }
 
 /// Returns the value of a sensor of a frame.
@@ -52,7 +52,7 @@ pub(super) fn frame(model: &Model, s: &State, sensor: usize) -> [f64; 4] {
     };
     let reference = framed(model, s, model.sensor_reftype[sensor], model.sensor_refid[sensor]);
     let seen = |v: Vec3| vector(reference.as_ref().map_or(v, |r| mat_t_vec(&r.mat, v)));
-    let com = |f: &Framed| sub(f.pos, s.subtree_com[model.body_rootid[f.body]]);
+    let com = |f: &FrameObject| sub(f.pos, s.subtree_com[model.body_rootid[f.body]]);
     match kind {
         SensorType::FrameQuat => match &reference {
             Some(r) => quat_mul(quat_conj(r.quat), object.quat),
@@ -67,7 +67,7 @@ pub(super) fn frame(model: &Model, s: &State, sensor: usize) -> [f64; 4] {
                 let of_reference = spatial_velocity(s, r.body, com(r));
                 axpy6(&mut v, -1.0, &of_reference);
                 if kind == SensorType::FrameLinVel {
-                    // what stands still in the world moves backwards where the reference turns
+                    // an object at rest moves backwards in the frame of a reference that turns
                     let turned = cross(sub(object.pos, r.pos), angular(&of_reference));
                     axpy6(&mut v, 1.0, &spatial([0.0; 3], turned));
                 }

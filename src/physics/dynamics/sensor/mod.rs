@@ -21,10 +21,11 @@ use subtree::SubtreeScratch;
 #[derive(Clone, Debug, Default)]
 pub struct SensorScratch {
     subtrees: SubtreeScratch,
-    between: between::Between,
+    between: between::DistanceScratch,
 }
 
 /// Computes `sensordata` from everything else. `scratch` keeps its memory between steps.
+#[doc(alias("mj_sensorPos", "mj_sensorVel", "mj_sensorAcc"))]
 pub fn sensors(model: &Model, s: &mut State, scratch: &mut SensorScratch) {
     let needs_subtrees = |kind: &SensorType| matches!(kind, SensorType::SubtreeLinVel | SensorType::SubtreeAngMom);
     if model.sensor_type.iter().any(needs_subtrees) {
@@ -118,14 +119,15 @@ fn on_site(model: &Model, s: &State, kind: SensorType, site: usize) -> [f64; 4] 
         SensorType::Torque => torque_at(&s.cfrc_int[body], offset),
         SensorType::Magnetometer => model.opt.magnetic,
         SensorType::RangeFinder => {
-            return scalar(nearest_geom(model, s, pos, column(mat, 2), body).map_or(-1.0, |(_, distance)| distance));
+            let hit = nearest_geom(model, s, pos, column(mat, 2), Some(body));
+            return scalar(hit.map_or(-1.0, |hit| hit.distance));
         }
         _ => return scalar(touch::touch(model, s, site)),
     };
     vector(mat_t_vec(mat, world))
 }
 
-/// Returns what a sensor of a limit reads from the first of its rows; 0 where there is none.
+/// Returns the reading of a limit sensor from the first of its rows; 0 if there is none.
 fn limit(s: &State, rows: ConstraintType, kind: SensorType, id: usize) -> f64 {
     let Some(block) = s.efc.blocks.iter().find(|b| b.kind == rows && b.id == id) else {
         return 0.0;

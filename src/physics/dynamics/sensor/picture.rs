@@ -20,7 +20,7 @@ pub(super) fn projection(model: &Model, s: &State, site: usize, camera: usize) -
     } else {
         [0.5 / pxfm::f_tan(model.cam_fovy[camera] * PI / 360.0) * height; 2]
     };
-    // never a division by what is next to nothing; the camera looks along -z
+    // never a division by nearly zero; the camera looks along -z
     let depth = match z {
         z if z.abs() >= MINVAL => z,
         z if z < 0.0 => -MINVAL,

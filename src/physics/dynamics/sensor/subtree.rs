@@ -18,6 +18,7 @@ pub struct SubtreeScratch {
 
 impl SubtreeScratch {
     /// Computes both from `cvel` (MuJoCo's `mj_subtreeVel`).
+    #[doc(alias = "mj_subtreeVel")]
     pub(super) fn update(&mut self, model: &Model, s: &State) {
         let nb = model.nbody();
         self.linvel.resize(nb, [0.0; 3]);

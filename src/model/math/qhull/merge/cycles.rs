@@ -1,21 +1,23 @@
 //! New facets in the plane of their horizon, which are merged into it all together.
 
 use super::super::Builder;
-use super::super::parts::{Id, NONE, Reason, Ridge, Step, Stuck, TAIL, drop_sorted, drop_swapping, replace};
+use super::super::parts::{
+    HullFailure, HullResult, Id, MergeReason, NONE, Ridge, TAIL, drop_sorted, drop_swapping, replace,
+};
 use super::{FEW_VERTICES, MOST_MERGES};
 
 impl Builder<'_> {
     /// Merges new facets without a plane of their own into their horizon (`qh_mergecycle_all`); returns whether there were any.
-    pub(super) fn merge_cycles(&mut self) -> Step<bool> {
+    pub(super) fn merge_cycles(&mut self) -> HullResult<bool> {
         let mut any = false;
         let mut facet = self.new_facets;
         while Self::listed(facet) {
             let mut next = self.facets[facet].next;
             if self.facets[facet].normal.is_none() {
                 if !self.facets[facet].merge_horizon {
-                    return Err(Stuck);
+                    return Err(HullFailure);
                 }
-                let horizon = *self.facets[facet].neighbors.first().ok_or(Stuck)?;
+                let horizon = *self.facets[facet].neighbors.first().ok_or(HullFailure)?;
                 self.facets[horizon].cycle = NONE;
                 if self.facets[facet].cycle == facet {
                     self.merge_alone(facet, horizon)?;
@@ -45,22 +47,22 @@ impl Builder<'_> {
     }
 
     /// Merges a new facet that is alone with its horizon.
-    fn merge_alone(&mut self, facet: Id, horizon: Id) -> Step {
+    fn merge_alone(&mut self, facet: Id, horizon: Id) -> HullResult {
         for i in 1..self.facets[facet].vertices.len() {
             let vertex = self.facets[facet].vertices[i];
             self.vertices[vertex].lost_ridge = true;
         }
-        self.merge_facet(facet, horizon, Reason::Horizon, None)
+        self.merge_facet(facet, horizon, MergeReason::Horizon, None)
     }
 
     /// Returns the new facets of a ring, from the one after `first` on to itself, without those that got a plane since.
-    fn ring(&mut self, first: Id) -> Step<Vec<Id>> {
+    fn ring(&mut self, first: Id) -> HullResult<Vec<Id>> {
         let mut ring = Vec::new();
         let mut at = first;
         loop {
             at = self.facets[at].cycle;
             if at == NONE || at == TAIL || self.facets[at].cycle_done || self.facets[at].visible {
-                return Err(Stuck);
+                return Err(HullFailure);
             }
             self.facets[at].cycle_done = true;
             if self.facets[at].normal.is_none() {
@@ -73,11 +75,11 @@ impl Builder<'_> {
     }
 
     /// Merges a ring of new facets into their horizon (`qh_mergecycle`).
-    fn merge_ring(&mut self, ring: &[Id], horizon: Id) -> Step {
+    fn merge_ring(&mut self, ring: &[Id], horizon: Id) -> HullResult {
         self.merge_count += 1;
         self.find_vertex_neighbors();
-        let first = *ring.last().ok_or(Stuck)?;
-        let apex = *self.facets[first].vertices.first().ok_or(Stuck)?;
+        let first = *ring.last().ok_or(HullFailure)?;
+        let apex = *self.facets[first].vertices.first().ok_or(HullFailure)?;
         self.make_ridges(horizon)?;
         let mark = self.ring_neighbors(ring, horizon)?;
         self.ring_ridges(ring, horizon, mark)?;
@@ -105,12 +107,12 @@ impl Builder<'_> {
 
     /// Gives the horizon the neighbours of the ring (`qh_mergecycle_neighbors`); returns the mark of the ring's facets, after
     /// which that of the horizon's neighbours comes.
-    fn ring_neighbors(&mut self, ring: &[Id], horizon: Id) -> Step<u32> {
+    fn ring_neighbors(&mut self, ring: &[Id], horizon: Id) -> HullResult<u32> {
         self.visit += 1;
         let mark = self.visit;
         for &same in ring {
             if self.facets[same].visit == mark || self.facets[same].visible {
-                return Err(Stuck);
+                return Err(HullFailure);
             }
             self.facets[same].visit = mark;
         }
@@ -166,7 +168,7 @@ impl Builder<'_> {
     }
 
     /// Gives the horizon the edges of the ring (`qh_mergecycle_ridges`).
-    fn ring_ridges(&mut self, ring: &[Id], horizon: Id, mark: u32) -> Step {
+    fn ring_ridges(&mut self, ring: &[Id], horizon: Id, mark: u32) -> HullResult {
         let mut ridges = std::mem::take(&mut self.facets[horizon].ridges);
         ridges.retain(|&ridge| self.facets[self.ridges[ridge].other(horizon)].visit != mark);
         self.facets[horizon].ridges = ridges;
@@ -183,7 +185,7 @@ impl Builder<'_> {
                     self.add_ridge(horizon, ridge);
                     continue;
                 } else {
-                    return Err(Stuck);
+                    return Err(HullFailure);
                 };
                 if neighbor == horizon {
                     continue;
@@ -202,7 +204,7 @@ impl Builder<'_> {
     }
 
     /// Makes entries for the edges between a triangle of the ring and triangles.
-    fn new_ring_ridges(&mut self, same: Id, horizon: Id, mark: u32) -> Step {
+    fn new_ring_ridges(&mut self, same: Id, horizon: Id, mark: u32) -> HullResult {
         for i in 0..self.facets[same].neighbors.len() {
             let neighbor = self.facets[same].neighbors[i];
             if self.facets[neighbor].visit == mark || !self.facets[neighbor].simplicial {
@@ -210,7 +212,7 @@ impl Builder<'_> {
             }
             let mut vertices = self.facets[same].vertices.clone();
             if i >= vertices.len() {
-                return Err(Stuck);
+                return Err(HullFailure);
             }
             vertices.remove(i);
             let top = self.facets[same].top != (i % 2 == 1);

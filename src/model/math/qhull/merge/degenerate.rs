@@ -1,11 +1,11 @@
 //! Facets with too few neighbours, and facets whose vertices are all in a neighbour.
 
 use super::super::Builder;
-use super::super::parts::{Id, Merge, NONE, Reason, Step, Stuck, drop_swapping};
+use super::super::parts::{HullFailure, HullResult, Id, Merge, MergeReason, NONE, drop_swapping};
 
 impl Builder<'_> {
-    /// Merges what is degenerate or redundant (`qh_merge_degenredundant`); returns whether there was any.
-    pub(super) fn merge_degenerate(&mut self) -> Step<bool> {
+    /// Merges degenerate and redundant facets (`qh_merge_degenredundant`); returns whether there were any.
+    pub(super) fn merge_degenerate(&mut self) -> HullResult<bool> {
         let mut any = false;
         while let Some(Merge {
             facet1, facet2, reason, ..
@@ -16,10 +16,10 @@ impl Builder<'_> {
             }
             self.facets[facet1].degenerate = false;
             self.facets[facet1].redundant = false;
-            if reason == Reason::Redundant {
+            if reason == MergeReason::Redundant {
                 let into = self.replacement(facet2)?;
                 if into == NONE {
-                    return Err(Stuck);
+                    return Err(HullFailure);
                 }
                 if facet1 != into {
                     self.merge_facet(facet1, into, reason, None)?;
@@ -47,7 +47,7 @@ impl Builder<'_> {
     }
 
     /// Notes a facet whose vertices are all in a neighbour, or that has too few neighbours (`qh_degen_redundant_facet`).
-    pub(super) fn test_degenerate(&mut self, facet: Id) -> Step {
+    pub(super) fn test_degenerate(&mut self, facet: Id) -> HullResult {
         if self.facets[facet].flipped {
             return Ok(());
         }
@@ -57,49 +57,49 @@ impl Builder<'_> {
                 continue;
             }
             if self.facets[neighbor].visible {
-                return Err(Stuck);
+                return Err(HullFailure);
             }
             self.mark_vertices(neighbor);
             if self.all_marked(facet) {
-                return self.note_merge(facet, neighbor, Reason::Redundant, 0.0);
+                return self.note_merge(facet, neighbor, MergeReason::Redundant, 0.0);
             }
         }
         if self.facets[facet].neighbors.len() < 3 {
-            self.note_merge(facet, facet, Reason::Degenerate, 0.0)?;
+            self.note_merge(facet, facet, MergeReason::Degenerate, 0.0)?;
         }
         Ok(())
     }
 
     /// Notes neighbours that have too few neighbours (`qh_test_degen_neighbors`).
-    pub(super) fn test_degenerate_neighbors(&mut self, facet: Id) -> Step {
+    pub(super) fn test_degenerate_neighbors(&mut self, facet: Id) -> HullResult {
         for i in 0..self.facets[facet].neighbors.len() {
             let neighbor = self.facets[facet].neighbors[i];
             let entry = &self.facets[neighbor];
             if entry.visible {
-                return Err(Stuck);
+                return Err(HullFailure);
             }
             if !entry.degenerate && !entry.redundant && !entry.dup_ridge && entry.neighbors.len() < 3 {
-                self.note_merge(neighbor, neighbor, Reason::Degenerate, 0.0)?;
+                self.note_merge(neighbor, neighbor, MergeReason::Degenerate, 0.0)?;
             }
         }
         Ok(())
     }
 
     /// Notes neighbours whose vertices are all in a facet (`qh_test_redundant_neighbors`).
-    pub(super) fn test_redundant_neighbors(&mut self, facet: Id) -> Step {
+    pub(super) fn test_redundant_neighbors(&mut self, facet: Id) -> HullResult {
         if self.facets[facet].neighbors.len() < 3 {
-            return self.note_merge(facet, facet, Reason::Degenerate, 0.0);
+            return self.note_merge(facet, facet, MergeReason::Degenerate, 0.0);
         }
         self.mark_vertices(facet);
         for i in 0..self.facets[facet].neighbors.len() {
             let neighbor = self.facets[facet].neighbors[i];
             let entry = &self.facets[neighbor];
             if entry.visible {
-                return Err(Stuck);
+                return Err(HullFailure);
             }
             let turned = self.facets[facet].flipped && !entry.flipped;
             if !entry.degenerate && !entry.redundant && !entry.dup_ridge && !turned && self.all_marked(neighbor) {
-                self.note_merge(neighbor, facet, Reason::Redundant, 0.0)?;
+                self.note_merge(neighbor, facet, MergeReason::Redundant, 0.0)?;
             }
         }
         Ok(())

@@ -1,24 +1,30 @@
 //! The merge of one facet into another.
 
 use super::super::Builder;
-use super::super::parts::{Id, NONE, Reason, Ridge, Step, Stuck, drop_sorted, drop_swapping, replace};
+use super::super::parts::{HullFailure, HullResult, Id, MergeReason, NONE, Ridge, drop_sorted, drop_swapping, replace};
 use super::super::tolerance::{larger, smaller};
 use super::{FEW_VERTICES, MOST_MERGES, TOO_WIDE};
 
 impl Builder<'_> {
     /// Merges a facet into another (`qh_mergefacet`). The bounds are how far its vertices are from the other's plane.
-    pub(super) fn merge_facet(&mut self, facet: Id, into: Id, reason: Reason, bounds: Option<[f64; 2]>) -> Step {
+    pub(super) fn merge_facet(
+        &mut self,
+        facet: Id,
+        into: Id,
+        reason: MergeReason,
+        bounds: Option<[f64; 2]>,
+    ) -> HullResult {
         self.merge_count += 1;
         if let Some([low, high]) = bounds {
             let most = larger(TOO_WIDE * self.tolerance.one_merge, self.facets[facet].max_outside);
             let most = larger(most, self.facets[into].max_outside);
             if high > most || -low > most {
-                return Err(Stuck);
+                return Err(HullFailure);
             }
         }
         let left = self.facet_count.saturating_sub(self.visible_count);
         if facet == into || self.facets[facet].visible || self.facets[into].visible || left <= 4 {
-            return Err(Stuck);
+            return Err(HullFailure);
         }
         self.find_vertex_neighbors();
         self.make_ridges(facet)?;
@@ -38,14 +44,14 @@ impl Builder<'_> {
         entry.dup_ridge = false;
         self.update_tested(facet, into);
         if self.facets[facet].vertices.len() == 3 {
-            self.merge_triangle(facet, into, reason == Reason::Horizon)?;
+            self.merge_triangle(facet, into, reason == MergeReason::Horizon)?;
         } else {
             self.merge_polygon(facet, into)?;
         }
         self.renew_facet(into)?;
         self.facets[into].new = true;
         self.facets[into].tested = false;
-        if reason != Reason::Horizon {
+        if reason != MergeReason::Horizon {
             self.test_redundant_neighbors(into)?;
             self.test_degenerate_neighbors(facet)?;
             self.test_degenerate(into)?;
@@ -53,7 +59,7 @@ impl Builder<'_> {
         self.will_delete(facet, into)
     }
 
-    /// Forgets what was tested, and the centre unless the facet is so large that it keeps it (`qh_updatetested`).
+    /// Clears the marks of tested ridges, and the centre of facets that are not large (`qh_updatetested`).
     fn update_tested(&mut self, facet: Id, into: Id) {
         self.facets[into].tested = false;
         for i in 0..self.facets[facet].ridges.len() {
@@ -80,7 +86,7 @@ impl Builder<'_> {
     }
 
     /// Gives a triangle entries for its edges: it is none any more (`qh_makeridges`).
-    pub(super) fn make_ridges(&mut self, facet: Id) -> Step {
+    pub(super) fn make_ridges(&mut self, facet: Id) -> HullResult {
         if !self.facets[facet].simplicial {
             return Ok(());
         }
@@ -100,7 +106,7 @@ impl Builder<'_> {
             }
             let mut vertices = self.facets[facet].vertices.clone();
             if i >= vertices.len() {
-                return Err(Stuck);
+                return Err(HullFailure);
             }
             vertices.remove(i);
             let simplicial = self.facets[neighbor].simplicial;
@@ -125,7 +131,7 @@ impl Builder<'_> {
 
     /// Merges a facet of more than three vertices (`qh_mergeneighbors`, `qh_mergevertices`, `qh_mergeridges`,
     /// `qh_mergevertex_neighbors`).
-    fn merge_polygon(&mut self, facet: Id, into: Id) -> Step {
+    fn merge_polygon(&mut self, facet: Id, into: Id) -> HullResult {
         self.vertex_visit += 1;
         let visit = self.vertex_visit;
         for i in 0..self.facets[into].vertices.len() {
@@ -162,7 +168,7 @@ impl Builder<'_> {
         }
     }
 
-    fn merge_neighbors(&mut self, facet: Id, into: Id) -> Step {
+    fn merge_neighbors(&mut self, facet: Id, into: Id) -> HullResult {
         self.visit += 1;
         for i in 0..self.facets[into].neighbors.len() {
             let neighbor = self.facets[into].neighbors[i];
@@ -183,7 +189,7 @@ impl Builder<'_> {
     }
 
     /// Takes a merged facet from a neighbour of both; its first neighbour stays in the first place, as the horizon is there.
-    fn replace_beside(&mut self, neighbor: Id, facet: Id, into: Id) -> Step {
+    fn replace_beside(&mut self, neighbor: Id, facet: Id, into: Id) -> HullResult {
         let neighbors = &mut self.facets[neighbor].neighbors;
         if neighbors.first() == Some(&facet) {
             drop_swapping(neighbors, into);
@@ -193,7 +199,7 @@ impl Builder<'_> {
         Ok(())
     }
 
-    fn merge_ridges(&mut self, facet: Id, into: Id) -> Step {
+    fn merge_ridges(&mut self, facet: Id, into: Id) -> HullResult {
         let mut i = 0;
         while let Some(&ridge) = self.facets[into].ridges.get(i) {
             if self.ridges[ridge].top == facet || self.ridges[ridge].bottom == facet {
@@ -257,11 +263,11 @@ impl Builder<'_> {
     }
 
     /// Merges a triangle (`qh_mergesimplex`): the other facet gets the vertex that is opposite to their edge.
-    fn merge_triangle(&mut self, facet: Id, into: Id, apex: bool) -> Step {
+    fn merge_triangle(&mut self, facet: Id, into: Id, apex: bool) -> HullResult {
         let vertices = self.facets[facet].vertices.clone();
         let fresh = self.facets[into].new;
         let (opposite, added) = if apex {
-            let opposite = *vertices.first().ok_or(Stuck)?;
+            let opposite = *vertices.first().ok_or(HullFailure)?;
             if !fresh {
                 self.renew_vertices(&self.facets[into].vertices.clone())?;
             }
@@ -271,7 +277,7 @@ impl Builder<'_> {
             }
             (opposite, added)
         } else {
-            let opposite = self.opposite(facet, into).ok_or(Stuck)?;
+            let opposite = self.opposite(facet, into).ok_or(HullFailure)?;
             let added = self.add_vertex(into, opposite);
             if !fresh {
                 self.renew_vertices(&self.facets[into].vertices.clone())?;
@@ -321,7 +327,7 @@ impl Builder<'_> {
         added
     }
 
-    fn merge_triangle_ridges(&mut self, facet: Id, into: Id) -> Step {
+    fn merge_triangle_ridges(&mut self, facet: Id, into: Id) -> HullResult {
         self.visit += 1;
         for i in 0..self.facets[into].neighbors.len() {
             let neighbor = self.facets[into].neighbors[i];
@@ -336,7 +342,7 @@ impl Builder<'_> {
                 continue;
             }
             if other == NONE || (self.facets[other].dup_ridge && !self.facets[other].neighbors.contains(&facet)) {
-                return Err(Stuck);
+                return Err(HullFailure);
             }
             self.add_ridge(into, ridge);
             if self.facets[other].visit != self.visit {

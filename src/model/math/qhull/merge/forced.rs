@@ -2,7 +2,7 @@
 
 use super::super::Builder;
 use super::super::matching::WIDE;
-use super::super::parts::{FORCED, Id, Merge, Reason, Step, Stuck};
+use super::super::parts::{FORCED, HullFailure, HullResult, Id, Merge, MergeReason};
 use super::super::plane::square_distance;
 use super::super::tolerance::larger;
 
@@ -11,7 +11,7 @@ const TOO_FAR: f64 = 100.0;
 
 impl Builder<'_> {
     /// Notes merges of new facets at shared edges, and gives them their edges (`qh_mark_dupridges`).
-    pub(super) fn mark_shared_edges(&mut self) -> Step {
+    pub(super) fn mark_shared_edges(&mut self) -> HullResult {
         let all = self.facets_from(self.new_facets);
         for &facet in &all {
             self.facets[facet].merge_ridge = false;
@@ -33,7 +33,7 @@ impl Builder<'_> {
                 let mutual = self.facets[neighbor].neighbors.contains(&facet);
                 let equal = self.facets[facet].vertices == self.facets[neighbor].vertices;
                 if !mutual || equal {
-                    self.note_merge(facet, neighbor, Reason::DupRidge, 0.0)?;
+                    self.note_merge(facet, neighbor, MergeReason::DupRidge, 0.0)?;
                     self.facets[facet].merge_ridge = true;
                     self.facets[facet].merge_ridge2 = true;
                     any = true;
@@ -55,9 +55,9 @@ impl Builder<'_> {
             let Merge {
                 facet1, facet2, reason, ..
             } = self.merges[i];
-            if reason == Reason::DupRidge {
+            if reason == MergeReason::DupRidge {
                 if self.facets[facet2].merge_ridge2 && self.facets[facet2].neighbors.contains(&facet1) {
-                    return Err(Stuck);
+                    return Err(HullFailure);
                 }
                 self.facets[facet2].neighbors.push(facet1);
                 self.make_ridges(facet1)?;
@@ -67,12 +67,12 @@ impl Builder<'_> {
     }
 
     /// Does these merges (`qh_forcedmerges`); returns whether there were any.
-    pub(super) fn merge_shared_edges(&mut self) -> Step<bool> {
+    pub(super) fn merge_shared_edges(&mut self) -> HullResult<bool> {
         let noted = std::mem::take(&mut self.merges);
         let (mut shared, mut merged) = (false, false);
         let mut others = Vec::new();
         for merge in noted {
-            if merge.reason != Reason::DupRidge {
+            if merge.reason != MergeReason::DupRidge {
                 others.push(merge);
                 continue;
             }
@@ -82,7 +82,7 @@ impl Builder<'_> {
                 continue;
             }
             if !self.facets[facet2].neighbors.contains(&facet1) {
-                return Err(Stuck);
+                return Err(HullFailure);
             }
             self.merge_shared(facet1, facet2)?;
             self.merge_degenerate()?;
@@ -96,7 +96,7 @@ impl Builder<'_> {
                     let entry = &mut self.facets[facet];
                     (entry.dup_ridge, entry.merge_ridge, entry.merge_ridge2) = (false, false, false);
                     if entry.neighbors.len() < 3 {
-                        self.note_merge(facet, facet, Reason::Degenerate, 0.0)?;
+                        self.note_merge(facet, facet, MergeReason::Degenerate, 0.0)?;
                     }
                 }
             }
@@ -106,7 +106,7 @@ impl Builder<'_> {
     }
 
     /// Merges the one of two facets that changes less, but rather one that points inwards.
-    fn merge_shared(&mut self, facet1: Id, facet2: Id) -> Step {
+    fn merge_shared(&mut self, facet1: Id, facet2: Id) -> HullResult {
         let ([dist1, low1, high1], [dist2, low2, high2]) = (self.spread(facet1, facet2), self.spread(facet2, facet1));
         self.check_shared(facet1, if dist1 > dist2 { dist2 } else { dist1 })?;
         let near = WIDE * (self.tolerance.one_merge + self.tolerance.dist);
@@ -117,44 +117,49 @@ impl Builder<'_> {
             flipped1 && !flipped2 && dist1 < near
         };
         if first {
-            self.merge_facet(facet1, facet2, Reason::DupRidge, Some([low1, high1]))
+            self.merge_facet(facet1, facet2, MergeReason::DupRidge, Some([low1, high1]))
         } else {
-            self.merge_facet(facet2, facet1, Reason::DupRidge, Some([low2, high2]))
+            self.merge_facet(facet2, facet1, MergeReason::DupRidge, Some([low2, high2]))
         }
     }
 
-    /// Refuses what would make a facet much wider than rounding errors (`qh_check_dupridge`).
-    fn check_shared(&self, facet: Id, dist: f64) -> Step {
+    /// Refuses a merge that would make a facet much wider than rounding errors (`qh_check_dupridge`).
+    fn check_shared(&self, facet: Id, dist: f64) -> HullResult {
         let outer = larger(self.max_outside, self.tolerance.dist) + self.tolerance.dist;
         let inner = self.min_vertex - self.tolerance.dist;
         let widest = larger(
             larger(larger(outer, inner), self.tolerance.one_merge + self.tolerance.dist),
             self.tolerance.outside + self.tolerance.dist,
         );
-        if dist / widest > TOO_FAR { Err(Stuck) } else { Ok(()) }.and_then(|()| self.check_distinct(facet))
+        if dist / widest > TOO_FAR {
+            Err(HullFailure)
+        } else {
+            Ok(())
+        }
+        .and_then(|()| self.check_distinct(facet))
     }
 
     /// Refuses facets with two vertices at the same place, whose plane means nothing.
-    fn check_distinct(&self, facet: Id) -> Step {
+    fn check_distinct(&self, facet: Id) -> HullResult {
         let vertices = &self.facets[facet].vertices;
         let twice = |i: usize, j: usize| square_distance(self.place(vertices[i]), self.place(vertices[j])) == 0.0;
         let any = (0..vertices.len()).any(|i| (i + 1..vertices.len()).any(|j| twice(i, j)));
-        if any { Err(Stuck) } else { Ok(()) }
+        if any { Err(HullFailure) } else { Ok(()) }
     }
 
     /// Merges facets that point inwards into their best neighbours (`qh_flippedmerges`); returns whether there were any.
-    pub(super) fn merge_flipped(&mut self) -> Step<bool> {
+    pub(super) fn merge_flipped(&mut self) -> HullResult<bool> {
         for facet in self.facets_from(self.new_facets) {
             if self.facets[facet].flipped && !self.facets[facet].visible {
-                self.note_merge(facet, facet, Reason::Flip, 0.0)?;
+                self.note_merge(facet, facet, MergeReason::Flip, 0.0)?;
             }
         }
         let noted = std::mem::take(&mut self.merges);
         let mut merged = false;
         for merge in &noted {
-            if merge.reason == Reason::Flip && !self.facets[merge.facet1].visible {
+            if merge.reason == MergeReason::Flip && !self.facets[merge.facet1].visible {
                 let (neighbor, [_, low, high]) = self.best_neighbor(merge.facet1)?;
-                self.merge_facet(merge.facet1, neighbor, Reason::Flip, Some([low, high]))?;
+                self.merge_facet(merge.facet1, neighbor, MergeReason::Flip, Some([low, high]))?;
                 merged = true;
             }
         }

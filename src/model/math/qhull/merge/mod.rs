@@ -9,7 +9,7 @@ mod rename;
 mod tests;
 
 use super::Builder;
-use super::parts::{Id, Merge, Reason, Step, Stuck};
+use super::parts::{HullFailure, HullResult, Id, Merge, MergeReason};
 
 /// More vertices than this, and facets are compared by their centres (`qh_BESTcentrum2 * 3 + qh_BESTcentrum`).
 const MANY_VERTICES: usize = 26;
@@ -27,7 +27,7 @@ const MOST_WORK: usize = 500_000_000;
 impl Builder<'_> {
     /// Merges the new facets of a point that are not clearly convex (`qh_premerge`): those in the plane of their horizon
     /// first, then those at shared edges, then those that point inwards, then by convexity.
-    pub(super) fn merge_new_facets(&mut self) -> Step {
+    pub(super) fn merge_new_facets(&mut self) -> HullResult {
         if self.clearly_convex()? {
             return Ok(());
         }
@@ -40,7 +40,7 @@ impl Builder<'_> {
     }
 
     /// Does all merges that are noted, tests what they changed, and begins again (`qh_all_merges`).
-    pub(super) fn merge_all(&mut self, merged_before: bool) -> Step {
+    pub(super) fn merge_all(&mut self, merged_before: bool) -> HullResult {
         let mut before = merged_before;
         loop {
             let mut merged = false;
@@ -67,7 +67,7 @@ impl Builder<'_> {
     }
 
     /// Does a merge, if both facets are still there, and as they were when it was noted.
-    fn do_merge(&mut self, merge: Merge) -> Step<bool> {
+    fn do_merge(&mut self, merge: Merge) -> HullResult<bool> {
         let Merge {
             facet1, facet2, reason, ..
         } = merge;
@@ -76,7 +76,7 @@ impl Builder<'_> {
         }
         // coplanar facets are merged one pair at a time: what changed is tested again
         let changed = |facet: Id| !self.facets[facet].tested && self.facets[facet].new;
-        if reason == Reason::Coplanar && (changed(facet1) || changed(facet2)) {
+        if reason == MergeReason::Coplanar && (changed(facet1) || changed(facet2)) {
             return Ok(false);
         }
         self.merge_nonconvex(facet1, facet2, reason)?;
@@ -85,7 +85,7 @@ impl Builder<'_> {
     }
 
     /// Merges one of two facets into its best neighbour: the one that changes less (`qh_merge_nonconvex`).
-    fn merge_nonconvex(&mut self, facet1: Id, facet2: Id, reason: Reason) -> Step {
+    fn merge_nonconvex(&mut self, facet1: Id, facet2: Id, reason: MergeReason) -> HullResult {
         let (first, second) = if self.facets[facet1].new {
             (facet1, facet2)
         } else {
@@ -101,7 +101,7 @@ impl Builder<'_> {
     }
 
     /// Finds the neighbour that a facet is nearest to, and how far it is from its plane (`qh_findbestneighbor`).
-    fn best_neighbor(&mut self, facet: Id) -> Step<(Id, [f64; 3])> {
+    fn best_neighbor(&mut self, facet: Id) -> HullResult<(Id, [f64; 3])> {
         let size = self.facets[facet].vertices.len();
         let by_center = size > MANY_VERTICES;
         let center = if by_center { Some(self.center(facet)) } else { None };
@@ -142,7 +142,7 @@ impl Builder<'_> {
                 break;
             }
         }
-        let (neighbor, mut spread) = best.ok_or(Stuck)?;
+        let (neighbor, mut spread) = best.ok_or(HullFailure)?;
         if by_center {
             let [_, low, high] = self.spread(facet, neighbor);
             spread = [spread[0], low, high];
@@ -151,16 +151,16 @@ impl Builder<'_> {
     }
 
     /// Notes a merge (`qh_appendmergeset`).
-    fn note_merge(&mut self, facet1: Id, facet2: Id, reason: Reason, distance: f64) -> Step {
+    fn note_merge(&mut self, facet1: Id, facet2: Id, reason: MergeReason, distance: f64) -> HullResult {
         if self.facets[facet1].redundant || self.facets[facet2].redundant {
             return Ok(());
         }
-        let degenerate = reason == Reason::Degenerate;
+        let degenerate = reason == MergeReason::Degenerate;
         if self.facets[facet1].degenerate && degenerate {
             return Ok(());
         }
-        if self.facets[facet2].flipped && !self.facets[facet1].flipped && reason != Reason::DupRidge {
-            return Err(Stuck);
+        if self.facets[facet2].flipped && !self.facets[facet1].flipped && reason != MergeReason::DupRidge {
+            return Err(HullFailure);
         }
         let merge = Merge {
             facet1,
@@ -168,14 +168,14 @@ impl Builder<'_> {
             reason,
             distance,
         };
-        if reason == Reason::Redundant {
+        if reason == MergeReason::Redundant {
             self.facets[facet1].redundant = true;
             self.degenerates.push(merge);
         } else if degenerate {
             self.facets[facet1].degenerate = true;
             // redundant ones are done before others
             match self.degenerates.last() {
-                Some(last) if last.reason != Reason::Degenerate => self.degenerates.insert(0, merge),
+                Some(last) if last.reason != MergeReason::Degenerate => self.degenerates.insert(0, merge),
                 _ => self.degenerates.push(merge),
             }
         } else {
@@ -186,10 +186,10 @@ impl Builder<'_> {
 
     /// Ends what would go on for ever, or for minutes: a hull is done long before there are so many facets and merges, and a cap of ten
     /// thousand edges, which each of its merges goes through, before there was so much work.
-    fn check_pace(&self) -> Step {
+    fn check_pace(&self) -> HullResult {
         let most = 1000 + 200 * self.points.len();
         if self.facets.len() > most || self.merge_count as usize > most || self.work > MOST_WORK {
-            Err(Stuck)
+            Err(HullFailure)
         } else {
             Ok(())
         }

@@ -1,12 +1,12 @@
 //! Vertices that merged facets no longer need.
 
 use super::super::Builder;
-use super::super::parts::{Id, Step, drop_sorted, drop_swapping};
+use super::super::parts::{HullResult, Id, drop_sorted, drop_swapping};
 
 impl Builder<'_> {
     /// Removes vertices without edges, and those in two facets only, from merged facets (`qh_reducevertices`). Returns whether
     /// facets became degenerate or redundant by it.
-    pub(super) fn reduce_vertices(&mut self) -> Step<bool> {
+    pub(super) fn reduce_vertices(&mut self) -> HullResult<bool> {
         let mut any = self.merge_degenerate()?;
         'again: loop {
             self.check_pace()?;

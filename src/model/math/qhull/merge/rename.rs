@@ -1,7 +1,7 @@
 //! Vertices that are replaced by one beside them.
 
 use super::super::Builder;
-use super::super::parts::{Id, NONE, Step, Stuck, VertexMerge, drop_sorted, drop_swapping, push_unique};
+use super::super::parts::{HullFailure, HullResult, Id, NONE, VertexMerge, drop_sorted, drop_swapping, push_unique};
 use crate::math::order;
 
 /// How many greatest widths apart vertices may be that are merged (`qh_WIDEpinched`).
@@ -10,7 +10,7 @@ const PINCHED: f64 = 100.0;
 impl Builder<'_> {
     /// Replaces a vertex that only two facets have, in one of them, by another that both have (`qh_rename_sharedvertex`); returns
     /// whether there is such a one.
-    pub(super) fn rename_shared(&mut self, vertex: Id, facet: Id) -> Step<bool> {
+    pub(super) fn rename_shared(&mut self, vertex: Id, facet: Id) -> HullResult<bool> {
         let &[a, b] = self.vertices[vertex].neighbors.as_slice() else {
             return Ok(false);
         };
@@ -94,7 +94,7 @@ impl Builder<'_> {
     }
 
     /// Replaces a vertex on edges and in facets (`qh_renamevertex`): in one of two, or wherever it is.
-    fn rename(&mut self, old: Id, into: Id, ridges: &[Id], between: Option<(Id, Id)>) -> Step {
+    fn rename(&mut self, old: Id, into: Id, ridges: &[Id], between: Option<(Id, Id)>) -> HullResult {
         for &ridge in ridges {
             if self.rename_on_ridge(ridge, old, into)? {
                 let entry = &self.ridges[ridge];
@@ -128,7 +128,7 @@ impl Builder<'_> {
     }
 
     /// Takes a vertex from all its facets.
-    fn leave_all(&mut self, old: Id) -> Step {
+    fn leave_all(&mut self, old: Id) -> HullResult {
         let mut i = 0;
         while let Some(&neighbor) = self.vertices[old].neighbors.get(i) {
             i += 1;
@@ -152,37 +152,37 @@ impl Builder<'_> {
     }
 
     /// Drops neighbours that a facet shares no edge with any more (`qh_maydropneighbor`).
-    fn drop_neighbors(&mut self, facet: Id) -> Step {
+    fn drop_neighbors(&mut self, facet: Id) -> HullResult {
         let ridges = &self.facets[facet].ridges;
         let beyond: Vec<Id> = ridges.iter().map(|&ridge| self.ridges[ridge].other(facet)).collect();
         let mut i = 0;
         while let Some(&neighbor) = self.facets[facet].neighbors.get(i) {
             if self.facets[neighbor].visible {
-                return Err(Stuck);
+                return Err(HullFailure);
             }
             if beyond.contains(&neighbor) {
                 i += 1;
                 continue;
             }
             if self.facets[neighbor].simplicial {
-                return Err(Stuck);
+                return Err(HullFailure);
             }
             drop_swapping(&mut self.facets[neighbor].neighbors, facet);
             if self.facets[neighbor].neighbors.len() < 3 {
-                self.note_merge(neighbor, neighbor, super::super::parts::Reason::Degenerate, 0.0)?;
+                self.note_merge(neighbor, neighbor, super::super::parts::MergeReason::Degenerate, 0.0)?;
             }
             self.facets[facet].neighbors.swap_remove(i);
         }
         if self.facets[facet].neighbors.len() < 3 {
-            self.note_merge(facet, facet, super::super::parts::Reason::Degenerate, 0.0)?;
+            self.note_merge(facet, facet, super::super::parts::MergeReason::Degenerate, 0.0)?;
         }
         Ok(())
     }
 
     /// Replaces a vertex of an edge; one that has both goes (`qh_renameridgevertex`). Returns whether it is left.
-    fn rename_on_ridge(&mut self, ridge: Id, old: Id, into: Id) -> Step<bool> {
+    fn rename_on_ridge(&mut self, ridge: Id, old: Id, into: Id) -> HullResult<bool> {
         let vertices = &mut self.ridges[ridge].vertices;
-        let before = vertices.iter().position(|&vertex| vertex == old).ok_or(Stuck)?;
+        let before = vertices.iter().position(|&vertex| vertex == old).ok_or(HullFailure)?;
         vertices.remove(before);
         if vertices.contains(&into) {
             self.delete_ridge(ridge);
@@ -223,7 +223,7 @@ impl Builder<'_> {
     }
 
     /// Merges vertices that are so noted, after the point was added, until none is left (`qh_all_vertexmerges`).
-    pub(in super::super) fn merge_vertices(&mut self) -> Step {
+    pub(in super::super) fn merge_vertices(&mut self) -> HullResult {
         while !self.vertex_merges.is_empty() {
             self.check_pace()?;
             self.find_vertex_neighbors();
@@ -243,12 +243,12 @@ impl Builder<'_> {
         if self.merges.is_empty() && self.degenerates.is_empty() {
             Ok(())
         } else {
-            Err(Stuck)
+            Err(HullFailure)
         }
     }
 
     /// Takes the merge of the nearest vertices (`qh_next_vertexmerge`).
-    fn next_vertex_merge(&mut self) -> Step<Option<VertexMerge>> {
+    fn next_vertex_merge(&mut self) -> HullResult<Option<VertexMerge>> {
         let mut best = (NONE as usize, f64::MAX);
         let mut i = 0;
         while let Some(&merge) = self.vertex_merges.get(i) {
@@ -265,19 +265,19 @@ impl Builder<'_> {
             return Ok(None);
         }
         if best.1 / self.tolerance.one_merge > PINCHED {
-            return Err(Stuck);
+            return Err(HullFailure);
         }
         Ok(Some(self.vertex_merges.swap_remove(best.0)))
     }
 
     /// Replaces a vertex by one beside it in all facets (`qh_rename_adjacentvertex`); its point is handed on.
-    fn rename_everywhere(&mut self, old: Id, into: Id) -> Step {
+    fn rename_everywhere(&mut self, old: Id, into: Id) -> HullResult {
         self.merge_count += 1;
         if self.vertices[old].deleted || self.vertices[into].deleted {
             return Ok(());
         }
         if self.vertices[old].neighbors.is_empty() || self.vertices[into].neighbors.is_empty() {
-            return Err(Stuck);
+            return Err(HullFailure);
         }
         for facet in self.vertices[old].neighbors.clone() {
             if !self.facets[facet].simplicial {
@@ -314,7 +314,7 @@ impl Builder<'_> {
                 }
             }
             if best.0 == NONE {
-                return Err(Stuck);
+                return Err(HullFailure);
             }
             self.partition_coplanar(self.vertices[old].point, best.0, None, false)?;
             self.vertices[old].partitioned = true;
@@ -323,9 +323,13 @@ impl Builder<'_> {
     }
 
     /// Replaces a vertex of a triangle, in whose order it has another place (`qh_replacefacetvertex`).
-    fn replace_vertex(&mut self, facet: Id, old: Id, into: Id) -> Step {
+    fn replace_vertex(&mut self, facet: Id, old: Id, into: Id) -> HullResult {
         let entry = &mut self.facets[facet];
-        let before = entry.vertices.iter().position(|&vertex| vertex == old).ok_or(Stuck)?;
+        let before = entry
+            .vertices
+            .iter()
+            .position(|&vertex| vertex == old)
+            .ok_or(HullFailure)?;
         let mut after = entry
             .vertices
             .iter()
@@ -338,7 +342,7 @@ impl Builder<'_> {
             entry.top = !entry.top;
         }
         if before >= entry.neighbors.len() || after >= entry.neighbors.len() {
-            return Err(Stuck);
+            return Err(HullFailure);
         }
         entry.vertices.remove(before);
         entry.vertices.insert(after, into);

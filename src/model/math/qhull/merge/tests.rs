@@ -1,12 +1,12 @@
 //! Tests of convexity.
 
 use super::super::Builder;
-use super::super::parts::{Id, NONE, Reason, Step};
+use super::super::parts::{HullResult, Id, MergeReason, NONE};
 use crate::math::order;
 
 impl Builder<'_> {
     /// Tells whether all new facets are clearly convex, by their vertices (`qh_checkzero`). Then nothing is merged.
-    pub(super) fn clearly_convex(&mut self) -> Step<bool> {
+    pub(super) fn clearly_convex(&mut self) -> HullResult<bool> {
         let all = self.facets_from(self.new_facets);
         for &facet in &all {
             let entry = &self.facets[facet];
@@ -39,7 +39,7 @@ impl Builder<'_> {
     }
 
     /// Tests new facets with their neighbours (`qh_getmergeset_initial`), and sorts the merges that this notes.
-    pub(super) fn test_new_facets(&mut self) -> Step {
+    pub(super) fn test_new_facets(&mut self) -> HullResult {
         self.visit += 1;
         let visit = self.visit;
         for facet in self.facets_from(self.new_facets) {
@@ -66,7 +66,7 @@ impl Builder<'_> {
     }
 
     /// Tests facets that changed, over the edges that did (`qh_getmergeset`), and sorts the merges.
-    pub(super) fn test_changed_facets(&mut self) -> Step {
+    pub(super) fn test_changed_facets(&mut self) -> HullResult {
         self.visit += 1;
         let visit = self.visit;
         for facet in self.facets_from(self.new_facets) {
@@ -111,7 +111,7 @@ impl Builder<'_> {
 
     /// Tests whether the centres of two facets are clearly below each other's plane; if not, notes a merge
     /// (`qh_test_centrum_merge`). Returns whether it did.
-    fn test_convex(&mut self, facet: Id, neighbor: Id) -> Step<bool> {
+    fn test_convex(&mut self, facet: Id, neighbor: Id) -> HullResult<bool> {
         let radius = self.tolerance.centrum;
         let center = self.center(facet);
         let dist = self.distance(center, neighbor);
@@ -122,16 +122,16 @@ impl Builder<'_> {
         let coplanar = at_plane(dist) || at_plane(dist2);
         if concave && coplanar {
             if dist > dist2 {
-                self.note_merge(facet, neighbor, Reason::ConcaveCoplanar, dist)?;
+                self.note_merge(facet, neighbor, MergeReason::ConcaveCoplanar, dist)?;
             } else {
-                self.note_merge(neighbor, facet, Reason::ConcaveCoplanar, dist2)?;
+                self.note_merge(neighbor, facet, MergeReason::ConcaveCoplanar, dist2)?;
             }
         } else if concave {
             let most = if dist < dist2 { dist2 } else { dist };
-            self.note_merge(facet, neighbor, Reason::Concave, most)?;
+            self.note_merge(facet, neighbor, MergeReason::Concave, most)?;
         } else if coplanar {
             let (a, b) = (dist.abs(), dist2.abs());
-            self.note_merge(facet, neighbor, Reason::Coplanar, if a < b { a } else { b })?;
+            self.note_merge(facet, neighbor, MergeReason::Coplanar, if a < b { a } else { b })?;
         }
         Ok(concave || coplanar)
     }

@@ -1,6 +1,6 @@
 //! Marks texels around which a texture has one colour, where a lookup needs no interpolation.
 
-use super::texture::Level;
+use super::MipLevel;
 
 /// Fourth byte of a texel that may have a neighbour of another colour.
 pub const MIXED: u8 = 255;
@@ -14,10 +14,10 @@ pub const SETTLED: u8 = 252;
 const ROUNDING: f32 = 0.01;
 
 /// Sets the fourth byte of each texel of a texture, which must be [`MIXED`] before.
-pub fn mark(levels: &mut [Level]) {
+pub fn mark(levels: &mut [MipLevel]) {
     for level in &mut *levels {
         let one = level.pixels.iter().all(|p| *p == level.pixels[0]);
-        let Level { width, pixels, .. } = level;
+        let MipLevel { width, pixels, .. } = level;
         for at in (0..pixels.len() - *width).step_by(*width) {
             let (upper, lower) = pixels[at..at + 2 * *width].split_at_mut(*width);
             for x in 1..*width {
@@ -39,16 +39,16 @@ pub fn mark(levels: &mut [Level]) {
     }
 }
 
-impl Level {
+impl MipLevel {
     /// Returns whether all pixels have the same colour.
     #[inline(always)]
-    pub(super) fn has_one_colour(&self) -> bool {
+    pub(crate) fn has_one_colour(&self) -> bool {
         self.pixels.last().is_some_and(|p| p[3] == SETTLED)
     }
 }
 
 /// Finds the plain texels of a level that the next one agrees with.
-fn settle(level: &mut Level, next: &Level) {
+fn settle(level: &mut MipLevel, next: &MipLevel) {
     let columns: Vec<_> = (0..level.width).map(|x| reached(x, level.width, next.width)).collect();
     for y in 0..level.height {
         let Some([upper, lower]) = reached(y, level.height, next.height) else {
@@ -79,11 +79,11 @@ fn reached(texel: usize, from: usize, to: usize) -> Option<[usize; 2]> {
 mod tests {
     use super::*;
 
-    fn level(width: usize, height: usize, colour: impl Fn(usize, usize) -> u8) -> Level {
+    fn level(width: usize, height: usize, colour: impl Fn(usize, usize) -> u8) -> MipLevel {
         let pixels = (0..width * height)
             .map(|i| [colour(i % width, i / width), 0, 0, MIXED])
             .collect();
-        Level { width, height, pixels }
+        MipLevel { width, height, pixels }
     }
 
     #[test]
@@ -93,7 +93,7 @@ mod tests {
         let coarse = level(4, 4, |x, _| [5, 9, 9, 8][x]);
         let mut levels = [fine, coarse];
         mark(&mut levels);
-        let row = |level: &Level, y: usize| -> Vec<u8> {
+        let row = |level: &MipLevel, y: usize| -> Vec<u8> {
             level.pixels[y * level.width..][..level.width]
                 .iter()
                 .map(|p| p[3])
@@ -112,7 +112,7 @@ mod tests {
     fn the_last_texel_tells_of_one_colour() {
         let mut levels = [level(2, 3, |_, _| 7), level(1, 1, |_, _| 7)];
         mark(&mut levels);
-        assert!(levels.iter().all(Level::has_one_colour));
+        assert!(levels.iter().all(MipLevel::has_one_colour));
         assert_eq!(levels[0].pixels[1][3], MIXED);
     }
 }

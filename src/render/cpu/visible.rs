@@ -2,20 +2,20 @@
 
 use wide::{f32x4, u32x4};
 
-use super::camera::Eye;
+use super::camera::ViewCamera;
 use super::frame::{Frame, PlacedDrawable};
 use super::lanes::{four, three};
-use super::light::{self, Corners, PlacedLight};
-use super::shade::Pixels;
-use super::target::{NONE, Target};
+use super::light::{self, PlacedLight, VertexGroup};
+use super::pixels::Pixels;
+use super::target::{NONE, VisibilityBuffer};
 use crate::drawable::Drawable;
 use crate::mesh::Mesh;
 use crate::scenery::Scenery;
 use crate::view::Poses;
 
-/// The triangles and vertices that an image shows.
+/// The triangles and vertices that are visible in an image.
 #[derive(Debug, Default)]
-pub struct Seen {
+pub struct VisibleTriangles {
     /// Indices of the records of triangles.
     pub triangles: Vec<u32>,
     lights: Vec<PlacedLight>,
@@ -45,12 +45,12 @@ impl LitVertex {
         drawable: &Drawable,
         draw: &PlacedDrawable,
         mesh: &Mesh,
-        eye: &Eye,
+        eye: &ViewCamera,
         vertices: [usize; 4],
     ) -> [Self; 4] {
         let lanes = |of: &dyn Fn(usize) -> f32| f32x4::new(four(|k| of(vertices[k])));
         let at = [&mesh.x, &mesh.y, &mesh.z].map(|v| lanes(&|i| v[i]));
-        let corners = Corners {
+        let corners = VertexGroup {
             part: four(|k| mesh.part_of(vertices[k])),
             at,
             normal: three(|k| lanes(&|i| mesh.normal[i][k])),
@@ -79,7 +79,7 @@ fn room(frame: &Frame) -> usize {
     if frame.vertices.len() <= most { most } else { all }
 }
 
-impl Seen {
+impl VisibleTriangles {
     /// Returns the light on a vertex that is seen.
     #[inline(always)]
     pub fn lit(&self, vertex: u32) -> &LitVertex {
@@ -87,7 +87,7 @@ impl Seen {
     }
 
     /// Finds the triangles that some pixels of a frame show, and numbers them; lights their vertices.
-    pub fn find(&mut self, frame: &mut Frame, scenery: &Scenery, poses: &Poses, eye: &Eye, pixels: Pixels) {
+    pub fn find(&mut self, frame: &mut Frame, scenery: &Scenery, poses: &Poses, eye: &ViewCamera, pixels: Pixels) {
         // once an image, not once a drawable: no light depends on what it shines on
         light::place(scenery, poses, eye, &mut self.lights);
         // what is seen grows with what is drawn, not later; a sample shows one triangle
@@ -115,8 +115,8 @@ impl Seen {
 
     /// Numbers the triangles that pixels show, and those of all fragments.
     #[inline(always)]
-    fn number(&mut self, target: &mut Target, wanted: impl Fn(usize, usize) -> bool) {
-        let Target {
+    fn number(&mut self, target: &mut VisibilityBuffer, wanted: impl Fn(usize, usize) -> bool) {
+        let VisibilityBuffer {
             width,
             ids,
             records,
@@ -201,7 +201,7 @@ impl Seen {
     }
 
     /// Lights the vertices of meshes.
-    fn light(&mut self, frame: &Frame, scenery: &Scenery, poses: &Poses, eye: &Eye) {
+    fn light(&mut self, frame: &Frame, scenery: &Scenery, poses: &Poses, eye: &ViewCamera) {
         const STRIDE: usize = 8;
         self.lit.clear();
         for &index in &frame.placed {

@@ -11,7 +11,7 @@ use rapier3d_f64::pipeline::ActiveHooks;
 use crate::inertial::inertial;
 use crate::scene::{collider_order, geom_pose, pose, shape};
 use crate::support::check;
-use crate::{RapierError, Sets};
+use crate::{RapierError, RapierSets};
 use mjcf_sim_model::math::*;
 use mjcf_sim_model::model::{EqualityKind, JointType, Model};
 use mjcf_sim_physics::dynamics::mul_m;
@@ -58,7 +58,7 @@ pub(super) struct WeldJoint {
 
 /// The bodies, joints and colliders of a model in a Rapier world, and the mapping between them and a [`State`].
 #[derive(Clone, Debug)]
-pub struct Rig {
+pub struct RapierBodies {
     /// Rigid body of each body of the model; bodies that do not move share one.
     body: Vec<RigidBodyHandle>,
     /// Frame of the rigid body in the model's body: its principal axes, see [`inertial`].
@@ -107,12 +107,12 @@ fn hinge(frame1: Pose, frame2: Pose) -> GenericJoint {
     }
 }
 
-impl Rig {
+impl RapierBodies {
     /// Inserts bodies, joints and colliders of `model`, whose gravity and forces the rig applies itself.
     ///
     /// # Errors
     /// Fails if the model has elements that Rapier's multibodies cannot represent.
-    pub fn insert(model: &Model, topology: &Topology, sets: &mut Sets) -> Result<Self, RapierError> {
+    pub fn insert(model: &Model, topology: &Topology, sets: &mut RapierSets) -> Result<Self, RapierError> {
         check(model, topology)?;
         let nb = model.nbody();
         let ground = sets.bodies.insert(RigidBodyBuilder::fixed());
@@ -160,7 +160,7 @@ impl Rig {
 
     /// Creates the joints of a body: a root for a free joint, a chain of links for hinges, all but the last without mass,
     /// and a rigid link for none.
-    fn connect(&mut self, model: &Model, b: usize, sets: &mut Sets) -> Result<(), RapierError> {
+    fn connect(&mut self, model: &Model, b: usize, sets: &mut RapierSets) -> Result<(), RapierError> {
         let joints = model.body_jntadr[b]..model.body_jntadr[b] + model.body_jntnum[b];
         if joints.clone().any(|j| model.jnt_type[j] == JointType::Free) {
             self.trees.push(Tree {
@@ -218,7 +218,7 @@ impl Rig {
     }
 
     /// Gives each multibody its final degrees of freedom, the armature of the model and no damping.
-    fn settle(&mut self, model: &Model, sets: &mut Sets) {
+    fn settle(&mut self, model: &Model, sets: &mut RapierSets) {
         for tree in &mut self.trees {
             let Some(link) = sets.multibody_joints.rigid_body_link(tree.root).copied() else {
                 continue;
@@ -236,7 +236,7 @@ impl Rig {
         }
     }
 
-    fn insert_colliders(&mut self, model: &Model, sets: &mut Sets) {
+    fn insert_colliders(&mut self, model: &Model, sets: &mut RapierSets) {
         for g in collider_order(model) {
             let b = model.geom_bodyid[g];
             let collider = ColliderBuilder::new(shape(model, g, model.geom_size[g]))
@@ -282,7 +282,14 @@ impl Rig {
     /// Rapier treats Coriolis forces in a way of its own, from the velocities it is given. It is given none: they enter
     /// as the force that produces them within a time step, `M qvel / h`, beside `qfrc_smooth`, which has our Coriolis
     /// forces. `force` (nv) is working memory.
-    pub(super) fn load(&self, model: &Model, topology: &Topology, s: &State, sets: &mut Sets, force: &mut Vec<f64>) {
+    pub(super) fn load(
+        &self,
+        model: &Model,
+        topology: &Topology,
+        s: &State,
+        sets: &mut RapierSets,
+        force: &mut Vec<f64>,
+    ) {
         force.resize(model.nv, 0.0);
         mul_m(topology, &s.qm, &s.qvel, force);
         for (f, smooth) in force.iter_mut().zip(&s.qfrc_smooth) {
@@ -330,7 +337,7 @@ impl Rig {
         }
     }
 
-    fn load_root(&self, model: &Model, s: &State, tree: &Tree, sets: &mut Sets, force: &[f64]) {
+    fn load_root(&self, model: &Model, s: &State, tree: &Tree, sets: &mut RapierSets, force: &[f64]) {
         if tree.articulated
             && let Some(id) = sets.multibody_joints.rigid_body_link(tree.root).copied()
             && let Some(multibody) = sets.multibody_joints.get_multibody_mut(id.multibody)
@@ -353,7 +360,7 @@ impl Rig {
     }
 
     /// Reads the velocities (nv) after Rapier's step, in the frames of its start.
-    pub(super) fn velocities(&self, model: &Model, s: &State, sets: &Sets, out: &mut [f64]) {
+    pub(super) fn velocities(&self, model: &Model, s: &State, sets: &RapierSets, out: &mut [f64]) {
         for tree in &self.trees {
             let Some(FreeJoint { body: b, dof: d }) = tree.free else {
                 continue;
@@ -387,13 +394,16 @@ impl Rig {
 }
 
 /// Returns the multibody of a link and the index of its degree of freedom.
-pub(super) fn multibody_of<'a>(sets: &'a mut Sets, handle: RigidBodyHandle) -> Option<(&'a mut Multibody, usize)> {
+pub(super) fn multibody_of<'a>(
+    sets: &'a mut RapierSets,
+    handle: RigidBodyHandle,
+) -> Option<(&'a mut Multibody, usize)> {
     let id = *sets.multibody_joints.rigid_body_link(handle)?;
     let multibody = sets.multibody_joints.get_multibody_mut(id.multibody)?;
     let at = multibody.link(id.id)?.assembly_id();
     Some((multibody, at))
 }
 
-fn link(sets: &mut Sets, parent: RigidBodyHandle, child: RigidBodyHandle, joint: GenericJoint) -> Option<()> {
+fn link(sets: &mut RapierSets, parent: RigidBodyHandle, child: RigidBodyHandle, joint: GenericJoint) -> Option<()> {
     sets.multibody_joints.insert(parent, child, joint, true).map(|_| ())
 }

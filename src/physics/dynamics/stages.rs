@@ -1,7 +1,7 @@
 //! Parts of a step for those who want them once. A step has all of its parts in one function; here each is a function of its own, so that
 //! programs have them only once more.
 
-use super::{Articulated, BiasScratch, Composite, Damping};
+use super::{Articulated, BiasScratch, CompositeInertia, Damping};
 use crate::model::{Arrays, Model};
 use crate::state::State;
 use crate::topology::Topology;
@@ -14,20 +14,23 @@ pub fn kinematics(model: &Arrays, s: &mut State) {
 }
 
 /// Computes `subtree_com, cinert, cdof` from poses.
+#[doc(alias = "mj_comPos")]
 #[inline(never)]
 pub fn com_pos(model: &Arrays, s: &mut State) {
     super::com_pos(model, s);
 }
 
 /// Computes the composite inertias and `qm` from `cinert` and `cdof`.
+#[doc(alias = "mj_crb")]
 #[inline(never)]
-pub fn crb(model: &Arrays, topology: &Topology, s: &mut State, composite: &mut Composite) {
+pub fn crb(model: &Arrays, topology: &Topology, s: &mut State, composite: &mut CompositeInertia) {
     super::crb(model, topology, s, composite);
 }
 
 /// Computes the articulated inertias from `cinert`, the composite inertias and `cdof`.
+#[doc(alias = "mj_factorM")]
 #[inline(never)]
-pub fn update(bodies: &mut Articulated, model: &Arrays, s: &State, composite: &Composite) {
+pub fn update(bodies: &mut Articulated, model: &Arrays, s: &State, composite: &CompositeInertia) {
     bodies.update(model, s, composite);
 }
 
@@ -40,6 +43,7 @@ pub fn rne_post_constraint(model: &Model, s: &mut State, double_weld_torque: boo
 }
 
 /// Solves `M x = b` (nv).
+#[doc(alias = "mj_solveM")]
 #[inline(never)]
 pub fn solve(bodies: &mut Articulated, s: &State, b: &[f64], x: &mut [f64]) {
     bodies.solve(s, Damping::Without, b, x);

@@ -2,8 +2,8 @@
 
 use std::ops::Range;
 
+use super::Topology;
 use crate::model::{Arrays, TrnType, Wrap};
-use crate::topology::Topology;
 
 /// A sparse row over the degrees of freedom for each of some elements.
 #[derive(Clone, Debug, Default)]
@@ -102,7 +102,7 @@ pub(super) fn actuator_scalar(model: &Arrays) -> Vec<Option<[u32; 2]>> {
     (0..model.nu()).map(scalar).collect()
 }
 
-/// Iterates over the bodies of what follows each other along a spatial tendon.
+/// Iterates over the bodies of neighbouring elements along a spatial tendon.
 fn neighbours(model: &Arrays, t: usize) -> impl Iterator<Item = [usize; 2]> {
     let pairs = model.tendon_wrap[t].windows(2);
     let direct = pairs.filter_map(|pair| Some([pair[0].body(model)?, pair[1].body(model)?]));

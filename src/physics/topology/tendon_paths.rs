@@ -1,25 +1,25 @@
-//! The paths of spatial tendons, prepared for a step: sites in order, what lies between them, and the degrees of freedom that move them.
+//! The paths of spatial tendons, prepared for a step: sites in order, the geoms between them, and the degrees of freedom that move them.
 
 use std::ops::Range;
 
-use crate::dof_rows::DofRows;
+use super::Topology;
+use super::dof_rows::DofRows;
 use crate::math::{Vec3, add, norm, quat_rotate, sub};
 use crate::model::{Arrays, Wrap};
-use crate::topology::Topology;
 
 /// The paths of all tendons.
 #[derive(Clone, Debug, Default)]
 pub struct TendonPaths {
     /// First leg of each tendon, and one past the last.
     adr: Vec<usize>,
-    legs: Vec<Leg>,
+    legs: Vec<PathElement>,
     stretches: Vec<PathSegment>,
     moved: Vec<PathDof>,
 }
 
-/// The next part of a path.
+/// An element of a path.
 #[derive(Clone, Copy, Debug)]
-enum Leg {
+enum PathElement {
     /// A pulley.
     Pulley,
     /// From one site to another: a stretch, by its place.
@@ -33,17 +33,18 @@ pub struct PathSegment {
     /// Factor of its length.
     pub share: f64,
     /// From one to the other.
-    pub straight: Span,
+    pub straight: StraightSegment,
     pub between: SegmentKind,
     /// Whether the path ends at the second site, or goes on behind a pulley.
     pub ends: bool,
 }
 
-/// The space between two sites of a path.
+/// The course of a path between two sites.
 #[derive(Clone, Debug)]
 pub enum SegmentKind {
+    /// A straight line.
     Nothing,
-    /// Nothing, and nothing moves them against each other: their distance, m.
+    /// A straight line of constant length, m: no degree of freedom moves the sites against each other.
     Constant(f64),
     /// A geom that may be in the way.
     Geom(Obstacle),
@@ -57,17 +58,17 @@ pub struct Obstacle {
     pub side: Option<usize>,
     pub cylinder: bool,
     /// From the first site to the geom, and from there to the second one.
-    pub spans: [Span; 2],
+    pub spans: [StraightSegment; 2],
 }
 
 /// A straight part between points of two bodies.
 #[derive(Clone, Debug)]
-pub struct Span {
+pub struct StraightSegment {
     /// The roots of the trees of both bodies.
     pub roots: [usize; 2],
-    /// What moves the first body and not the second.
+    /// Degrees of freedom that move the first body and not the second.
     first: Range<usize>,
-    /// What moves the second body and not the first.
+    /// Degrees of freedom that move the second body and not the first.
     second: Range<usize>,
     /// Whether anything moves either body, be it both of them.
     pub moves: bool,
@@ -81,7 +82,7 @@ pub struct PathDof {
 }
 
 impl TendonPaths {
-    /// Lists what the paths of a model consist of. `rows` are the degrees of freedom of each tendon.
+    /// Derives the paths of a model. `rows` are the degrees of freedom of each tendon.
     pub fn new(model: &Arrays, topology: &Topology, rows: &DofRows) -> Self {
         let mut all = Self::default();
         all.adr.push(0);
@@ -101,7 +102,7 @@ impl TendonPaths {
         while k + 1 < path.len() {
             if let Wrap::Pulley { divisor: next } = path[k] {
                 divisor = next;
-                self.legs.push(Leg::Pulley);
+                self.legs.push(PathElement::Pulley);
             }
             let (first, between, second) = match (&path[k], &path[k + 1], path.get(k + 2)) {
                 (Wrap::Site { site: first }, Wrap::Site { site }, _) => (*first, None, *site),
@@ -133,7 +134,7 @@ impl TendonPaths {
                 }
                 None => rigid_distance(model, [first, second]).map_or(SegmentKind::Nothing, SegmentKind::Constant),
             };
-            self.legs.push(Leg::Sites(self.stretches.len()));
+            self.legs.push(PathElement::Sites(self.stretches.len()));
             self.stretches.push(PathSegment {
                 sites: [first, second],
                 share: 1.0 / divisor,
@@ -144,8 +145,8 @@ impl TendonPaths {
         }
     }
 
-    /// Adds what moves two bodies apart.
-    fn span(&mut self, model: &Arrays, topology: &Topology, bodies: [usize; 2], dofs: &[u32]) -> Span {
+    /// Adds the degrees of freedom that change the distance of two bodies.
+    fn span(&mut self, model: &Arrays, topology: &Topology, bodies: [usize; 2], dofs: &[u32]) -> StraightSegment {
         let [a, b] = bodies;
         let (first, second) = topology.apart(a, b);
         let mut add = |chain: &[u32]| {
@@ -155,7 +156,7 @@ impl TendonPaths {
             self.moved.extend(moved);
             start..self.moved.len()
         };
-        Span {
+        StraightSegment {
             roots: bodies.map(|body| model.body_rootid[body]),
             first: add(first),
             second: add(second),
@@ -168,14 +169,14 @@ impl TendonPaths {
     pub fn path(&self, tendon: usize) -> impl Iterator<Item = Option<&PathSegment>> {
         let legs = &self.legs[self.adr[tendon]..self.adr[tendon + 1]];
         legs.iter().map(|leg| match *leg {
-            Leg::Pulley => None,
-            Leg::Sites(k) => Some(&self.stretches[k]),
+            PathElement::Pulley => None,
+            PathElement::Sites(k) => Some(&self.stretches[k]),
         })
     }
 
-    /// Returns what moves the first end of a span alone, and what moves the second one alone.
+    /// Returns the degrees of freedom that move the first end of a span alone, and those that move the second one alone.
     #[inline]
-    pub fn apart(&self, span: &Span) -> [&[PathDof]; 2] {
+    pub fn apart(&self, span: &StraightSegment) -> [&[PathDof]; 2] {
         [&self.moved[span.first.clone()], &self.moved[span.second.clone()]]
     }
 }

@@ -1,0 +1,26 @@
+//! The place in the document at which elements are inserted, and their default class.
+
+use super::super::error::{ErrorKind, LoadError};
+use super::super::schema::Element;
+use super::Classes;
+
+/// The body, and the frame in it, that new elements are inserted into.
+#[derive(Clone, Copy)]
+pub(super) struct Insertion {
+    pub body: usize,
+    pub within: Option<usize>,
+}
+
+impl Insertion {
+    /// The world itself.
+    pub const WORLD: Self = Insertion { body: 0, within: None };
+}
+
+/// Checks that a default class for children exists.
+pub(super) fn known(e: &Element, class: &str, classes: &Classes) -> Result<(), LoadError> {
+    if classes.by_name.contains_key(class) {
+        Ok(())
+    } else {
+        Err(classes.error(e, ErrorKind::UnknownClass(class.to_owned())))
+    }
+}

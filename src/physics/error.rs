@@ -1,0 +1,131 @@
+//! The errors of states and engines.
+
+use thiserror::Error;
+
+/// An error in advancing a state.
+#[derive(Clone, Debug, Error, PartialEq)]
+#[non_exhaustive]
+pub enum EngineError {
+    /// A vector of the state does not fit the model.
+    #[error("state.{what} has {found} values but the model needs {expected}: build states with Engine::new_state")]
+    Shape {
+        /// Field.
+        what: &'static str,
+        /// Length found.
+        found: usize,
+        /// Length needed.
+        expected: usize,
+    },
+    /// A number given to the engine is not finite.
+    #[error("state.{what}[{index}] is {value}: only finite numbers can be simulated")]
+    NotFinite {
+        /// Field.
+        what: &'static str,
+        /// Position in the field.
+        index: usize,
+        /// The number.
+        value: f64,
+    },
+    /// A force is applied to a body that does not exist.
+    #[error("there is no body {body}; the model has {count}, numbered from 0")]
+    NoBody {
+        /// Body asked for, by id.
+        body: usize,
+        /// Number of bodies.
+        count: usize,
+    },
+    /// A keyframe that does not exist is asked for.
+    #[error("there is no keyframe {key}; the model has {count}, numbered from 0")]
+    NoKeyframe {
+        /// Keyframe asked for.
+        key: usize,
+        /// Number of keyframes.
+        count: usize,
+    },
+    /// The mass or the size of a body that something holds cannot change.
+    #[error(
+        "the body {body:?} is not free: mass, inertia and size can change for bodies of the world with a free joint that carry \
+         no other body"
+    )]
+    NotFree {
+        /// Name of the body.
+        body: String,
+    },
+    /// A body without geoms has no size.
+    #[error("the body {body:?} has no geom whose size could change")]
+    NoGeom {
+        /// Name of the body.
+        body: String,
+    },
+    /// A mass, an inertia or a size is not a positive number.
+    #[error("{what}[{index}] is {value}: it must be finite and > 0")]
+    NotPositive {
+        /// Quantity.
+        what: &'static str,
+        /// Position in it.
+        index: usize,
+        /// The number.
+        value: f64,
+    },
+    /// An engine has the parameters of the model built in.
+    #[error("the engine cannot change params.{what}: use SoftEngine (engine: soft)")]
+    FixedParameter {
+        /// Field of the parameters.
+        what: &'static str,
+    },
+    /// A force applied to a body is not finite.
+    #[error("{what}[{index}] is {value}: only finite forces, torques and points can be applied")]
+    Applied {
+        /// Vector at fault.
+        what: &'static str,
+        /// Position in it.
+        index: usize,
+        /// The number.
+        value: f64,
+    },
+    /// More at once than a step may take.
+    #[error("more than {limit} {what} in step {step}: place the bodies apart, or let fewer of them touch")]
+    TooMany {
+        /// Steps done before.
+        step: u64,
+        /// The kind of item that exceeds the limit.
+        what: &'static str,
+        /// The limit, of [`mjcf_sim_model::Limits`].
+        limit: usize,
+    },
+    /// The simulation diverged.
+    #[error(
+        "the simulation diverged in step {step} at joint {joint:?} ({what} = {value:e}): reset it, and use smaller actions, \
+         forces or time steps"
+    )]
+    Diverged {
+        /// Steps done before.
+        step: u64,
+        /// Joint whose coordinate is out of bounds.
+        joint: String,
+        /// Quantity.
+        what: &'static str,
+        /// Its value.
+        value: f64,
+    },
+    /// The simulation diverged in a contact, though positions, velocities and accelerations still are numbers.
+    #[error(
+        "the simulation diverged in step {step} where the geoms {} and {} touch (position or force is not a finite number): \
+         make sizes, masses or speeds smaller", .geoms[0], .geoms[1]
+    )]
+    DivergedContact {
+        /// Steps done before.
+        step: u64,
+        /// Names of the geoms, in quotes; the number of one without a name.
+        geoms: [String; 2],
+    },
+}
+
+/// Checks a number against its limit.
+pub(super) fn within(limit: usize, found: usize, what: &'static str, step: u64) -> Result<(), EngineError> {
+    if found > limit {
+        Err(EngineError::TooMany { step, what, limit })
+    } else {
+        Ok(())
+    }
+}
