@@ -3,8 +3,10 @@
 #![forbid(unsafe_code)]
 #![deny(missing_docs)]
 
+mod batch;
 mod simulation;
 
+pub use batch::rollout_on;
 pub use mjcf_sim_loader as mjcf_loader;
 pub use mjcf_sim_model::{Limits, Model, assets, files, formats, limits, math, model, pool, text, threads};
 pub use mjcf_sim_physics as physics;

@@ -7,7 +7,8 @@ use std::sync::Arc;
 use mjcf_sim_loader::{LoadError, load, load_str};
 use mjcf_sim_model::Model;
 use mjcf_sim_model::assets::{AssetError, AssetSource, FileSystem, MemoryAssets};
-use mjcf_sim_physics::{Engine, EngineError, SoftEngine, SoftOptions, State, compile};
+use mjcf_sim_model::math::Vec3;
+use mjcf_sim_physics::{Engine, EngineError, RayHit, SoftEngine, SoftOptions, State, compile, ray};
 use mjcf_sim_render::{FreeCamera, Poses, RenderError, RenderRequest, Renderer, Scenery, View};
 
 /// A simulated scene: a compiled model, its state, the engine that steps it, and the textures to draw it with.
@@ -89,7 +90,7 @@ impl fmt::Debug for Simulation {
 }
 
 impl Simulation {
-    /// Loads an MJCF document. What it includes, its meshes and its textures are found beside it.
+    /// Loads an MJCF document. Included files, meshes and textures are found beside it.
     ///
     /// # Errors
     /// A file that is missing or too large; a document that is not understood or cannot be compiled, with its place.
@@ -175,7 +176,7 @@ impl Simulation {
         Ok(self.engine.reset_to_keyframe(&mut self.state, key)?)
     }
 
-    /// Returns what a sensor read at the start of the last step, or at the last [`forward`](Self::forward).
+    /// Returns the reading of a sensor at the start of the last step, or at the last [`forward`](Self::forward).
     ///
     /// # Errors
     /// The model has no sensor with this name.
@@ -186,6 +187,15 @@ impl Simulation {
             .ok_or_else(|| unknown("sensor", name, model.sensor_name.clone()))?;
         let start = model.sensor_adr[sensor];
         Ok(&self.state.sensordata[start..start + model.sensor_dim[sensor]])
+    }
+
+    /// Returns the first geom that a ray meets from `origin` (m) along `direction`, world frame; see [`physics::ray`](crate::physics::ray).
+    ///
+    /// # Errors
+    /// [`state`](Self::state) is of another model.
+    #[doc(alias = "mj_ray")]
+    pub fn ray(&self, origin: Vec3, direction: Vec3) -> Result<Option<RayHit>, SimulationError> {
+        Ok(ray(self.model(), &self.state, origin, direction, None)?)
     }
 
     /// Sets the control of an actuator for the steps to come.

@@ -4,25 +4,27 @@ use std::sync::Arc;
 
 use thiserror::Error;
 
-use crate::engine::{Engine, EngineError};
+use crate::engine::Engine;
+use crate::error::EngineError;
 use crate::model::Model;
 use crate::soft::{SoftEngine, SoftModel, SoftOptions};
 use crate::state::State;
 
-/// A state of a batch that could not be stepped. It stays as the failed step has left it; the others were stepped.
+/// An error of a state of a batch. The state is as the failed step has left it. All others were stepped.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[error("state {index} of the batch: {source}")]
 pub struct BatchError {
-    /// Which state; the first one, if there are several.
+    /// Index of the state, of the first one if there are several.
     pub index: usize,
-    /// Why.
+    /// The error of its step.
     pub source: EngineError,
 }
 
-/// Many states of one model that are stepped together, as searchers and controllers (MPPI, the cross-entropy method, tree search) want them.
+/// Many states of one model that are stepped together, for searches and controllers (MPPI, the cross-entropy method, tree search).
 ///
-/// One engine steps all of them, and stays in the cache of its core; [`Batch::split`] lends parts of the batch to threads, each with an engine of its
-/// own. Each state gets the bits that it would get alone, whatever the number of states and of threads. After a first [`Batch::rollout`]
+/// One engine steps all of them, and stays in the cache of its core. `mjcf_sim::rollout_on` steps them on threads, each with an engine
+/// of its own.
+/// Each state gets the bits that it would get alone, whatever the number of states and of threads. After a first [`Batch::rollout`]
 /// nothing is allocated.
 ///
 /// ```
@@ -71,20 +73,20 @@ impl Batch {
         &self.states
     }
 
-    /// Returns the states, to change what decides how they go on.
+    /// Returns the states, to change their dynamic fields.
     pub fn states_mut(&mut self) -> &mut [State] {
         &mut self.states
     }
 
-    /// Lets all states go on from where another one is, of this model: time, positions, velocities, activations, controls, forces, warm start
-    /// and parameters. What else a state has is that of its last step, until the next one.
+    /// Sets the dynamic fields of all states to those of another state of this model: time, positions, velocities, activations, controls, forces, warm start
+    /// and parameters. Computed quantities stay those of the last step until the next one.
     pub fn fork(&mut self, from: &State) {
         for state in &mut self.states {
             state.copy_dynamic_from(from);
         }
     }
 
-    /// Lets a state go on from where another one of the batch is, as [`Batch::fork`] does: what a resampling needs.
+    /// Sets the dynamic fields of one state of the batch to those of another, for resampling.
     pub fn copy(&mut self, from: usize, to: usize) {
         if let Ok([from, to]) = self.states.get_disjoint_mut([from, to]) {
             to.copy_dynamic_from(from);
@@ -109,8 +111,8 @@ impl Batch {
             .map_or(Ok(()), |mut all| all.rollout(steps, control))
     }
 
-    /// Splits the batch into at most `parts` runs of neighbours, of nearly one size, each with an engine: one for each thread that the caller starts,
-    /// scoped ones, say. A batch without states has no parts.
+    /// Splits the batch into at most `parts` runs of neighbours, of nearly one size, each with an engine, for threads of the caller's. A batch
+    /// without states has no parts. `mjcf_sim::rollout_on` starts threads itself.
     pub fn split(&mut self, parts: usize) -> impl Iterator<Item = BatchPart<'_>> {
         let parts = parts.clamp(1, self.states.len().max(1));
         let missing = parts.saturating_sub(self.engines.len());
@@ -125,7 +127,7 @@ impl Batch {
     }
 }
 
-/// A run of neighbours of a [`Batch`], with an engine, for a thread.
+/// Consecutive states of a [`Batch`], with an engine, for a thread.
 #[derive(Debug)]
 pub struct BatchPart<'a> {
     engine: &'a mut SoftEngine,
