@@ -73,7 +73,7 @@ fn film(env: &Env, scenery: &Scenery) -> Result<[f64; 2], Box<dyn std::error::Er
 }
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
-    for scene in Scene::ALL {
+    for scene in Scene::BABYBENCH {
         let mut env = Env::new(Config {
             vision_active: false,
             ..seen(scene.clone())

@@ -67,7 +67,7 @@ fn environments(blueprint: &Blueprint) -> Result<Vec<Env>, Box<dyn std::error::E
 }
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
-    for scene in Scene::ALL {
+    for scene in Scene::BABYBENCH {
         let blueprint = Blueprint::new(seen(scene.clone()))?;
         let scenery = blueprint.scenery()?;
         let mut gpu = GpuRenderer::new(scenery.clone())?;

@@ -53,7 +53,7 @@ fn configurations() -> Vec<Config> {
         (EngineKind::Soft, true),
         (EngineKind::Rapier, false),
     ] {
-        for scene in Scene::ALL {
+        for scene in Scene::BABYBENCH {
             for behavior in [Behavior::SelfTouch, Behavior::HandRegard] {
                 for &actuation_model in ActuationModel::ALL {
                     out.push(Config {

@@ -1,6 +1,6 @@
 //! A user-defined task: MIMo lies on the floor and lifts his right hand to a height of 30 cm or more, a different one in each episode.
 
-use babybench::env::{BlueprintOptions, Goal, Task, TaskScene, TaskSizes, TaskView, Verdict};
+use babybench::env::{BlueprintOptions, Goal, StepReward, Task, TaskScene, TaskSizes, TaskView};
 use babybench::{Blueprint, Config, EnvError, Model};
 
 #[derive(Clone, Debug, Default)]
@@ -33,8 +33,8 @@ impl Task for Lift {
         achieved.fill(view.state.xpos[self.hand][2]);
     }
 
-    fn judge(&self, goal: Goal<'_>) -> Verdict {
-        Verdict {
+    fn judge(&self, goal: Goal<'_>) -> StepReward {
+        StepReward {
             reward: -(goal.desired[0] - goal.achieved[0]).max(0.0),
             is_success: goal.achieved >= goal.desired,
             is_failure: false,

@@ -4,7 +4,7 @@
 //! cargo run --release --example random_policy
 //! ```
 
-use babybench::eval::{Evaluation, Touchables};
+use babybench::eval::{Evaluation, TouchableGeoms};
 use babybench::{Config, make_env};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -37,7 +37,9 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let mut evaluation = Evaluation::new(&env);
         print!(
             "{}",
-            evaluation.eval_logs()?.to_text(Touchables::new(env.model()).as_ref())
+            evaluation
+                .eval_logs()?
+                .to_text(TouchableGeoms::new(env.model()).as_ref())
         );
         env.reset(None)?;
         for _step in 0..500 {

@@ -73,7 +73,7 @@ impl Arena {
             autoreset: AutoresetMode::Disabled,
             ..VectorOptions::default()
         };
-        use babybench::sensors::Component::{Angles, Velocities};
+        use babybench::sensors::ProprioceptionComponent::{Angles, Velocities};
         Ok(Self {
             angles: place(Angles)?,
             velocities: place(Velocities)?,

@@ -10,7 +10,7 @@ use std::path::Path;
 use babybench::config::{ActuationModel, Behavior, Scene};
 use babybench::runs::logs::evaluation_path;
 use babybench::runs::{
-    EvaluationLog, KeptScene, SceneFileError, keep_scene, read_config, read_scene, read_training, start_training,
+    EvaluationLog, SceneFileError, SceneFileStatus, keep_scene, read_config, read_scene, read_training, start_training,
 };
 use babybench::{Blueprint, Config, make_env};
 use common::*;
@@ -231,14 +231,14 @@ fn scenes_are_kept_or_refused() {
     let make = |scene, actuation| blueprint(config(scene, actuation));
     let keep = |blueprint: &Blueprint| keep_scene(blueprint);
     let motors = make(Scene::Crib, ActuationModel::SpringDamper);
-    assert!(matches!(keep(&motors), Ok(KeptScene::Written)));
-    assert!(matches!(keep(&motors), Ok(KeptScene::Same)));
+    assert!(matches!(keep(&motors), Ok(SceneFileStatus::Written)));
+    assert!(matches!(keep(&motors), Ok(SceneFileStatus::Same)));
     assert!(matches!(
         keep(&make(Scene::Crib, ActuationModel::Muscle)),
-        Ok(KeptScene::Same)
+        Ok(SceneFileStatus::Same)
     ));
     let servos = make(Scene::Crib, ActuationModel::Positional);
-    assert!(matches!(keep(&servos), Ok(KeptScene::Similar)));
+    assert!(matches!(keep(&servos), Ok(SceneFileStatus::Similar)));
     let cubes = make(Scene::Cubes, ActuationModel::SpringDamper);
     assert!(matches!(keep(&cubes), Err(SceneFileError::Different { .. })));
     start_training(&motors, false).expect("a training");
@@ -246,7 +246,7 @@ fn scenes_are_kept_or_refused() {
     let error = resumed.expect_err("another scene");
     assert!(error.to_string().contains("the scene crib with MIMo v1"), "{error}");
     folder.file("scene.xml", "<mujoco>");
-    assert!(matches!(keep(&motors), Ok(KeptScene::Foreign(_))));
+    assert!(matches!(keep(&motors), Ok(SceneFileStatus::Foreign(_))));
 }
 
 /// Ctrl-C.

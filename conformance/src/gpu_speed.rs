@@ -44,7 +44,7 @@ pub fn print(environments: &[usize]) -> Result<(), String> {
         Some(python) => others::rows(&python, "mjwarp", environments)?,
     };
     let mut ours = Vec::new();
-    for scene in Scene::ALL {
+    for scene in Scene::BABYBENCH {
         ours.extend(ours::rows(scene, environments)?);
     }
     let rows: Vec<Row> = ours.into_iter().chain(egl).chain(warp).collect();
@@ -77,7 +77,7 @@ fn print_rates(rows: &[Row], environments: &[usize]) {
     let renderers = renderers(rows);
     println!("| scene | environments | {} |", renderers.join(" | "));
     println!("|---|--:|{}", "--:|".repeat(renderers.len()));
-    for scene in Scene::ALL.iter().map(ToString::to_string) {
+    for scene in Scene::BABYBENCH.iter().map(ToString::to_string) {
         for &n in environments {
             let cell = |renderer: &&str| {
                 let here = |r: &&Row| (&r.scene, r.environments, r.renderer.as_str()) == (&scene, n, *renderer);
@@ -98,7 +98,7 @@ fn print_rates(rows: &[Row], environments: &[usize]) {
 fn print_differences(rows: &[Row]) -> Result<(), String> {
     println!("| scene | renderer | from MuJoCo's here | from OSMesa's |");
     println!("|---|---|--:|--:|");
-    for scene in Scene::ALL.iter().map(ToString::to_string) {
+    for scene in Scene::BABYBENCH.iter().map(ToString::to_string) {
         let osmesa = ours::osmesa(&scene)?;
         let of = |renderer: &str| rows.iter().find(|r| r.scene == scene && r.renderer == renderer);
         let here = of(others::EGL).ok_or("gpu_eyes.py gave no pictures by EGL")?;

@@ -27,7 +27,7 @@ impl Reference {
     pub fn all() -> Vec<Self> {
         let mut all = Vec::new();
         for behavior in [Behavior::None, Behavior::HandRegard] {
-            for scene in Scene::ALL.iter().cloned() {
+            for scene in Scene::BABYBENCH.iter().cloned() {
                 let config = Config {
                     behavior,
                     scene: scene.clone(),

@@ -1,7 +1,7 @@
 //! Training plans: for each task the inputs of its policy, and the stages of its training.
 
 use babybench::config::Behavior;
-use babybench::sensors::Component;
+use babybench::sensors::ProprioceptionComponent;
 use babybench::{Config, Env};
 
 use crate::linear::{Design, Feature};
@@ -198,8 +198,8 @@ fn drives(env: &Env) -> Result<Vec<Drive>, Box<dyn std::error::Error>> {
         let missing = || format!("{joint} is not felt");
         Ok(Drive {
             action,
-            angle: place(Component::Angles).ok_or_else(missing)?,
-            velocity: place(Component::Velocities).ok_or_else(missing)?,
+            angle: place(ProprioceptionComponent::Angles).ok_or_else(missing)?,
+            velocity: place(ProprioceptionComponent::Velocities).ok_or_else(missing)?,
         })
     };
     (0..env.action_space().len()).map(drive).collect()

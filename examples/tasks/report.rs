@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
 use babybench::config::Behavior;
-use babybench::eval::Interval;
+use babybench::eval::ConfidenceInterval;
 use babybench::policy::{NoisePolicy, OnnxPolicy, Policy, RandomPolicy, ZeroPolicy};
 use babybench::spaces::Noise;
 use babybench::{Blueprint, Config, Env};
@@ -134,7 +134,7 @@ fn row(folder: &Path, entry: &Entry) -> Result<Row, Error> {
             all.push(reward);
             reached.extend(success);
         }
-        let Interval { mean, low, high, .. } = Interval::of(&all).ok_or("no episodes")?;
+        let ConfidenceInterval { mean, low, high, .. } = ConfidenceInterval::of(&all).ok_or("no episodes")?;
         if k == 1 {
             random = mean;
         }

@@ -6,7 +6,7 @@ otherwise. Errors are Python's own: ``ValueError``, ``TypeError``, ``KeyError``,
 
 import os
 from collections.abc import Mapping, Sequence
-from typing import Any, ClassVar, final
+from typing import Any, ClassVar, Optional, final
 
 import numpy as np
 import numpy.typing as npt
@@ -195,12 +195,12 @@ class Env:
         """Returns the images of the last observation, and draws them if they are not drawn yet."""
     def info(self, details: bool = True) -> dict[str, Any]:
         """Returns the information of the last step; ``details`` adds names of touched parts and angles of gaze (rad)."""
-    def other_spaces(self) -> list[tuple[tuple[_Array, _Array], int]]:
-        """Returns the bounds of an action of each other infant in the scene, and the length of his observation."""
-    def act_other(self, index: int, action: npt.ArrayLike) -> None:
-        """Sets the action of another infant, which holds until the next one or a reset."""
-    def observe_other(self, index: int) -> _Array:
-        """Returns what another infant feels: angles (rad), velocities (rad/s), the head's motion, torques (N m)."""
+    def second_spaces(self) -> Optional[tuple[tuple[_Array, _Array], int]]:
+        """Returns the bounds of an action of the second infant and the length of its observation, if there is one."""
+    def act_second(self, action: npt.ArrayLike) -> None:
+        """Sets the action of the second infant, which holds until the next one or a reset."""
+    def observe_second(self) -> _Array:
+        """Returns the second infant's observation: angles (rad), velocities (rad/s), the head's motion, torques (N m)."""
     def set_goal(self, desired: npt.ArrayLike) -> dict[str, _Array]:
         """Changes the desired goal of the episode; returns the observation with it."""
     def compute_reward(self, achieved: npt.ArrayLike, desired: npt.ArrayLike, terms: npt.ArrayLike) -> _Floats:

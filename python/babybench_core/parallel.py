@@ -62,14 +62,14 @@ class ParallelEnv(pettingzoo.ParallelEnv[str, Observation, npt.NDArray[np.float3
                 the learner has.
         """
         self.env = Env(config, **arguments)
-        spaces = self.env._core.other_spaces()
-        if not spaces:
+        spaces = self.env._core.second_spaces()
+        if spaces is None:
             self.env.close()
             raise ValueError(
                 "the scene has no second infant to move: include other_mimo.xml, as the guide's chapter on rooms shows, "
                 "and leave actuation_model: muscle out"
             )
-        (low, high), felt = spaces[0]
+        (low, high), felt = spaces
         self.possible_agents = [LEARNER, OTHER]
         self.agents: list[str] = []
         self.render_mode = self.env.render_mode
@@ -128,7 +128,7 @@ class ParallelEnv(pettingzoo.ParallelEnv[str, Observation, npt.NDArray[np.float3
             raise KeyError(f"there is no action of the agent {LEARNER!r}, which needs one in each step")
         action = actions[LEARNER]
         if OTHER in actions:
-            self.env._core.act_other(0, actions[OTHER])
+            self.env._core.act_second(actions[OTHER])
         observation, reward, terminated, truncated, info = self.env.step(action)
         both = self.possible_agents
         if terminated or truncated:
@@ -150,4 +150,4 @@ class ParallelEnv(pettingzoo.ParallelEnv[str, Observation, npt.NDArray[np.float3
         self.env.close()
 
     def _observed(self, observation: Observation) -> dict[str, Observation]:
-        return {LEARNER: observation, OTHER: self.env._core.observe_other(0)}
+        return {LEARNER: observation, OTHER: self.env._core.observe_second()}

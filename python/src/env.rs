@@ -1,9 +1,9 @@
 //! One environment.
 
 use babybench::config::FacialExpression;
-use babybench::env::{OtherInfant, Snapshot};
+use babybench::env::{SecondInfant, Snapshot};
 use numpy::PyArray1;
-use pyo3::exceptions::{PyIndexError, PyValueError};
+use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
 
@@ -28,8 +28,8 @@ pub struct Inner {
     pub painters: Painters,
     pub action: Vec<f32>,
     views: Option<Views>,
-    /// The other infants in the scene, and what one of them feels.
-    others: Vec<OtherInfant>,
+    /// The second infant in the scene, and what it feels.
+    second: Option<SecondInfant>,
     felt: Vec<f64>,
     /// Whether observations have no images, which are drawn on request.
     lazy: bool,
@@ -88,7 +88,7 @@ impl Env {
         let env = detached(py, || shared.env())?;
         let views = if views { Some(Views::new(py, &env, lazy)?) } else { None };
         let inner = Inner {
-            others: env.others(),
+            second: env.second_infant(),
             felt: Vec::new(),
             env,
             blueprint,
@@ -229,37 +229,33 @@ impl Env {
         task::compute_reward(py, &self.guard()?.open()?.env, [achieved, desired, terms])
     }
 
-    // --- other infants ---
+    // --- second infant ---
 
-    fn other_spaces<'py>(&self, py: Python<'py>) -> PyResult<Vec<(Pair<'py, f32>, usize)>> {
+    /// Returns the bounds of its action and the length of its observation, if there is one.
+    fn second_spaces<'py>(&self, py: Python<'py>) -> PyResult<Option<(Pair<'py, f32>, usize)>> {
         let mut guard = self.guard()?;
-        let others = &guard.open()?.others;
-        let space = |other: &OtherInfant| {
-            let space = other.action_space();
+        let second = guard.open()?.second.as_ref();
+        Ok(second.map(|second| {
+            let space = second.action_space();
             let bound = |side: &[f32]| PyArray1::from_slice(py, side);
-            ((bound(space.low()), bound(space.high())), other.observation_len())
-        };
-        Ok(others.iter().map(space).collect())
+            ((bound(space.low()), bound(space.high())), second.observation_len())
+        }))
     }
 
-    fn act_other(&self, index: usize, action: &Bound<'_, PyAny>) -> PyResult<()> {
+    fn act_second(&self, action: &Bound<'_, PyAny>) -> PyResult<()> {
         let mut guard = self.guard()?;
-        let Inner {
-            env,
-            others,
-            action: numbers,
-            ..
-        } = guard.open()?;
-        let other = others.get(index).ok_or_else(|| no_other(index))?;
-        read("action", action, &[other.actuators().len()], numbers)?;
-        other.act(env, numbers).map_err(IntoException::into_exception)
+        let inner = guard.open()?;
+        let second = inner.second.as_ref().ok_or_else(no_second)?;
+        read("action", action, &[second.actuators().len()], &mut inner.action)?;
+        second
+            .act(&mut inner.env, &inner.action)
+            .map_err(IntoException::into_exception)
     }
 
-    fn observe_other<'py>(&self, py: Python<'py>, index: usize) -> PyResult<Bound<'py, PyArray1<f64>>> {
+    fn observe_second<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<f64>>> {
         let mut guard = self.guard()?;
-        let Inner { env, others, felt, .. } = guard.open()?;
-        let other = others.get(index).ok_or_else(|| no_other(index))?;
-        other.observe(env.model(), env.state(), felt);
+        let Inner { env, second, felt, .. } = guard.open()?;
+        second.as_ref().ok_or_else(no_second)?.observe(env.state(), felt);
         Ok(PyArray1::from_slice(py, felt))
     }
 
@@ -436,7 +432,7 @@ impl Env {
         detached(py, || inner.env.set_age(age))?;
         // what was made of the body as it was
         inner.painters = Painters::default();
-        inner.others = inner.env.others();
+        inner.second = inner.env.second_infant();
         inner.blueprint = Py::new(
             py,
             Blueprint {
@@ -556,11 +552,9 @@ impl Env {
     }
 }
 
-/// Returns the error that the scene has no other infant.
-fn no_other(index: usize) -> PyErr {
-    PyIndexError::new_err(format!(
-        "the scene has no other infant {index}: see `others` in the guide's chapter on rooms"
-    ))
+/// Returns the error that the scene has no second infant.
+fn no_second() -> PyErr {
+    PyValueError::new_err("the scene has no second infant: see the guide's chapter on rooms")
 }
 
 fn felt(inner: &Inner) -> PyResult<&babybench::sensors::Touch> {

@@ -7,7 +7,7 @@ use babybench::EnvError;
 use babybench::assets::AssetError;
 use babybench::config::ConfigError;
 use babybench::env::SnapshotError;
-use babybench::mimo::{LockError, RoomError};
+use babybench::mimo::{CustomSceneError, LockError};
 use babybench::physics::EngineError;
 use babybench::vector::VectorError;
 use pyo3::exceptions::{PyFileNotFoundError, PyKeyError, PyMemoryError, PyOSError, PyRuntimeError, PyValueError};
@@ -46,8 +46,8 @@ impl IntoException for EnvError {
             | Self::ActionNotFinite { .. }
             | Self::StateLength { .. }
             | Self::Engine(EngineError::NotFinite { .. } | EngineError::Applied { .. }) => PyValueError::new_err(text),
-            Self::Room(RoomError::NoDocument { .. }) => PyFileNotFoundError::new_err(text),
-            Self::Room(RoomError::Stray { .. }) => PyValueError::new_err(text),
+            Self::CustomScene(CustomSceneError::NoDocument { .. }) => PyFileNotFoundError::new_err(text),
+            Self::CustomScene(CustomSceneError::Stray { .. }) => PyValueError::new_err(text),
             Self::Missing { .. } => PyKeyError::new_err(text),
             _ => PyRuntimeError::new_err(text),
         }

@@ -7,7 +7,7 @@ use babybench::Limits;
 use babybench::eval::Measures;
 use babybench::formats::npz::NpzError;
 use babybench::runs::{
-    Motion, MotionError, Owner, Playing, Record, RecordError, RecordOptions, Recorder as Inside, play_motion,
+    Motion, MotionError, MotionMode, Owner, Record, RecordError, RecordOptions, Recorder as Inside, play_motion,
 };
 use pyo3::exceptions::{PyFileExistsError, PyValueError};
 use pyo3::prelude::*;
@@ -184,7 +184,11 @@ pub fn play_senses(
 ) -> PyResult<PlayedSenses> {
     let mut guard = env.guard()?;
     let env = &mut guard.open()?.env;
-    let playing = if track { Playing::Tracking } else { Playing::Kinematic };
+    let playing = if track {
+        MotionMode::Tracking
+    } else {
+        MotionMode::Kinematic
+    };
     let mut interrupted = Ok(());
     let played = py.detach(|| {
         let motion = Motion::read_with(&motion, degrees, &Limits::DEFAULT)?;

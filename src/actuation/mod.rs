@@ -2,9 +2,9 @@
 //!
 //! | model | action, per actuator | observed, per actuator | of the scene |
 //! |---|---|---|---|
-//! | [`SpringDamper`] | 1: torque over gear | control, torque | motors |
-//! | [`Muscle`] | 2: excitations in [0, 1] | 2 activities, 2 forces | the same motors, joints without springs |
-//! | [`Positional`] | 1: angle, rad | angle | position servos |
+//! | [`SpringDamperModel`] | 1: torque over gear | control, torque | motors |
+//! | [`MuscleModel`] | 2: excitations in [0, 1] | 2 activities, 2 forces | the same motors, joints without springs |
+//! | [`PositionalModel`] | 1: angle, rad | angle | position servos |
 //!
 //! Actions drive the actuators on MIMo's joints; those of other bodies in a scene are left at the control 0, unless `act_others`.
 //!
@@ -14,8 +14,8 @@
 
 pub mod curves;
 mod error;
+mod extra_actuators;
 mod muscle;
-mod others;
 mod positional;
 mod spring_damper;
 
@@ -25,9 +25,9 @@ use crate::physics::State;
 use crate::spaces::BoxSpace;
 
 pub use error::ActuationError;
-pub use muscle::{Muscle, MuscleParams};
-pub use positional::Positional;
-pub use spring_damper::SpringDamper;
+pub use muscle::{MuscleModel, MuscleParams};
+pub use positional::PositionalModel;
+pub use spring_damper::SpringDamperModel;
 
 /// Turns actions into controls of a scene's actuators. The functions depend on model and state alone.
 pub trait Actuation: Send + Sync {
@@ -35,11 +35,11 @@ pub trait Actuation: Send + Sync {
     fn action_space(&self) -> &BoxSpace;
 
     /// Returns the actuators that an action drives, by id: those on MIMo's joints. An action has a number for each, or several blocks of
-    /// such numbers. The controls of other actuators stay 0, except for [`Actuation::others`].
+    /// such numbers. The controls of other actuators stay 0, except for [`Actuation::extra_actuators`].
     fn actuators(&self) -> &[usize];
 
     /// Returns the actuators of other bodies that an action drives, by id: each by one of the last numbers. None unless `act_others`.
-    fn others(&self) -> &[usize] {
+    fn extra_actuators(&self) -> &[usize] {
         &[]
     }
 
@@ -72,20 +72,27 @@ pub trait Actuation: Send + Sync {
     fn cost(&self, model: &Model, state: &State) -> f64;
 }
 
+/// Sets the controls of actuators, by id, to numbers of an action, clipped to the bounds of the space from its dimension `first` on.
+pub(crate) fn set_controls(ctrl: &mut [f64], space: &BoxSpace, actuators: &[usize], first: usize, action: &[f32]) {
+    for (k, (&i, &value)) in actuators.iter().zip(action).enumerate() {
+        ctrl[i] = f64::from(space.clip(first + k, value));
+    }
+}
+
 /// Builds the actuation model of a configuration.
 ///
 /// # Errors
 /// Actuators of `model` that the actuation model cannot drive, illegal parameters of muscles.
 pub fn build(model: &Model, config: &Config) -> Result<Box<dyn Actuation>, ActuationError> {
     let mimo: Box<dyn Actuation> = match config.actuation_model {
-        ActuationModel::SpringDamper => Box::new(SpringDamper::new(model, config.compat)),
-        ActuationModel::Muscle => Box::new(Muscle::new(model, config.compat)?),
-        ActuationModel::Positional => Box::new(Positional::new(model, config.compat)?),
+        ActuationModel::SpringDamper => Box::new(SpringDamperModel::new(model, config.compat)),
+        ActuationModel::Muscle => Box::new(MuscleModel::new(model, config.compat)?),
+        ActuationModel::Positional => Box::new(PositionalModel::new(model, config.compat)?),
     };
-    // without others it is the model itself, so MIMo's own path does not change
-    let others = config.act_others && mimo.actuators().len() < model.nu();
-    Ok(if others {
-        Box::new(others::WithOthers::new(mimo, model))
+    // without extra actuators it is the model itself, so MIMo's own path does not change
+    let extra = config.act_others && mimo.actuators().len() < model.nu();
+    Ok(if extra {
+        Box::new(extra_actuators::WithExtraActuators::new(mimo, model))
     } else {
         mimo
     })

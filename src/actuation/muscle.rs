@@ -34,22 +34,22 @@ fn activate(act: f64, target: f64, h: f64) -> f64 {
 /// start of the episode. Under `compat: reference` the forces are those of the scene's `qpos0`, and nothing pulls until
 /// the next step or start action: controls are 0, torques those of the last step.
 #[derive(Clone, Debug)]
-pub struct Muscle {
+pub struct MuscleModel {
     space: BoxSpace,
     actuators: Vec<usize>,
     params: Vec<MuscleParams>,
-    joints: Vec<Joint>,
+    joints: Vec<JointAddress>,
     compat: Compat,
 }
 
 /// The addresses of the joint of an actuator.
 #[derive(Clone, Copy, Debug)]
-struct Joint {
+struct JointAddress {
     qposadr: usize,
     dofadr: usize,
 }
 
-impl Muscle {
+impl MuscleModel {
     /// Builds the actuation for the motors of MIMo in `model`, whose user data are the muscles' parameters.
     ///
     /// # Errors
@@ -63,7 +63,7 @@ impl Muscle {
             .collect::<Result<_, _>>()?;
         let joint = |&i: &usize| {
             let j = model.actuator_trnid[i];
-            Joint {
+            JointAddress {
                 qposadr: model.jnt_qposadr[j],
                 dofadr: model.jnt_dofadr[j],
             }
@@ -132,7 +132,7 @@ impl Muscle {
     }
 }
 
-impl Actuation for Muscle {
+impl Actuation for MuscleModel {
     fn action_space(&self) -> &BoxSpace {
         &self.space
     }

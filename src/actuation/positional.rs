@@ -16,22 +16,22 @@ use crate::spaces::BoxSpace;
 /// With a `frame_skip` above 1 the target holds for all substeps; under `compat: reference` every substep but the first
 /// has the target and the observed action 0. The metabolic cost is 0.
 #[derive(Clone, Debug)]
-pub struct Positional {
+pub struct PositionalModel {
     space: BoxSpace,
     actuators: Vec<usize>,
-    holds: Vec<Hold>,
+    holds: Vec<HoldEquality>,
     compat: Compat,
 }
 
 /// A joint equality of an actuated joint.
 #[derive(Clone, Copy, Debug)]
-struct Hold {
+struct HoldEquality {
     equality: usize,
     /// By id.
     actuator: usize,
 }
 
-impl Positional {
+impl PositionalModel {
     /// Builds the actuation for the servos of MIMo in `model`.
     ///
     /// # Errors
@@ -71,7 +71,7 @@ impl Positional {
             if let EqualityKind::Joint { joint1, joint2, .. } = kind {
                 let on = |j: usize| *joint1 == j || *joint2 == Some(j);
                 let held = actuators.iter().filter(|&&i| model.actuator_joint(i).is_some_and(on));
-                holds.extend(held.map(|&actuator| Hold { equality, actuator }));
+                holds.extend(held.map(|&actuator| HoldEquality { equality, actuator }));
             }
         }
         Ok(Self {
@@ -104,7 +104,7 @@ impl Positional {
     }
 }
 
-impl Actuation for Positional {
+impl Actuation for PositionalModel {
     fn action_space(&self) -> &BoxSpace {
         &self.space
     }

@@ -12,13 +12,13 @@ use crate::spaces::BoxSpace;
 /// Under `compat: api` the action space is [-1, 1] and the motor's force range limits the torque; under
 /// `compat: reference` the action space is the force range itself.
 #[derive(Clone, Debug)]
-pub struct SpringDamper {
+pub struct SpringDamperModel {
     space: BoxSpace,
     actuators: Vec<usize>,
     compat: Compat,
 }
 
-impl SpringDamper {
+impl SpringDamperModel {
     /// Builds the actuation for the motors of MIMo in `model`.
     pub fn new(model: &Model, compat: Compat) -> Self {
         let bounds = |i: usize| match compat {
@@ -48,7 +48,7 @@ impl SpringDamper {
     }
 }
 
-impl Actuation for SpringDamper {
+impl Actuation for SpringDamperModel {
     fn action_space(&self) -> &BoxSpace {
         &self.space
     }

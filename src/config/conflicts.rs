@@ -29,15 +29,15 @@ const SIDES: [&str; 7] = [
 ];
 
 /// Keys that shape a sense, and what to do when it is off.
-struct Shaping {
+struct SenseKeys {
     off: fn(&Config) -> bool,
     keys: &'static [&'static str],
     reason: &'static str,
 }
 
 /// The keys that shape senses that can be off, or motors.
-const SHAPING: [Shaping; 6] = [
-    Shaping {
+const SHAPING: [SenseKeys; 6] = [
+    SenseKeys {
         off: |c| !c.vision_active,
         keys: &[
             "vision_acuity",
@@ -53,7 +53,7 @@ const SHAPING: [Shaping; 6] = [
         ],
         reason: "it shapes what the eyes see, and they are off; set `vision_active: true`",
     },
-    Shaping {
+    SenseKeys {
         off: |c| {
             ![VisionOutput::Rgb, VisionOutput::Gray]
                 .iter()
@@ -67,7 +67,7 @@ const SHAPING: [Shaping; 6] = [
         ],
         reason: "it changes images in colour and grey, and neither is observed; add rgb or gray to `vision_outputs`",
     },
-    Shaping {
+    SenseKeys {
         off: |c| !c.touch_enabled(),
         keys: &[
             "touch_pooled",
@@ -78,17 +78,17 @@ const SHAPING: [Shaping; 6] = [
         ],
         reason: "it needs touch, which is off; set `touch_active: true` and a `touch_scale` above 0",
     },
-    Shaping {
+    SenseKeys {
         off: |c| !c.vestibular_active,
         keys: &["noise_vestibular", "delay_vestibular"],
         reason: "it shapes the sense of balance, which is off; set `vestibular_active: true`",
     },
-    Shaping {
+    SenseKeys {
         off: |c| c.actuation_model == ActuationModel::Positional,
         keys: &["noise_motor"],
         reason: "it grows with the effort, and actions of `actuation_model: positional` are angles; choose spring_damper or muscle",
     },
-    Shaping {
+    SenseKeys {
         off: |c| !c.pain_active,
         keys: &[
             "pain_threshold",

@@ -10,14 +10,14 @@ use super::scene::Scene;
 use super::table::{Config, KEYS};
 
 /// A field of [`Config`] that converts to and from a [`KeyValue`].
-pub(super) trait Field: Sized {
+pub(super) trait ConfigField: Sized {
     fn to_value(&self) -> KeyValue;
     fn from_value(value: &KeyValue) -> Option<Self>;
 }
 
 macro_rules! field {
     ($($type:ty, $variant:ident, $value:ident => $back:expr, |$field:ident| $there:expr;)*) => {$(
-        impl Field for $type {
+        impl ConfigField for $type {
             fn to_value(&self) -> KeyValue {
                 let $field = self;
                 KeyValue::$variant($there)
@@ -53,7 +53,7 @@ field! {
     VisionOutputs, List, v => Self::from_names(v), |f| f.iter().map(VisionOutput::name).collect();
 }
 
-impl Field for Scene {
+impl ConfigField for Scene {
     fn to_value(&self) -> KeyValue {
         match self {
             Self::File(path) => KeyValue::Text(path.clone()),
@@ -72,7 +72,7 @@ impl Field for Scene {
     }
 }
 
-impl<T: Field> Field for Option<T> {
+impl<T: ConfigField> ConfigField for Option<T> {
     fn to_value(&self) -> KeyValue {
         self.as_ref().map_or(KeyValue::None, T::to_value)
     }
@@ -188,7 +188,7 @@ macro_rules! config {
             kind: $kind,
             doc: $doc,
             get: |config| config.$($field).+.to_value(),
-            set: |config, value| Field::from_value(value).map(|new| config.$($field).+ = new).is_some(),
+            set: |config, value| ConfigField::from_value(value).map(|new| config.$($field).+ = new).is_some(),
         }
     };
 }

@@ -97,13 +97,13 @@ pub enum KeyKind {
 
 /// A reason why a value does not fit its key.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) enum Misfit {
+pub(super) enum ValueFault {
     Missing,
     WrongType,
     OutOfRange { nearest: Option<&'static str> },
 }
 
-const OUT_OF_RANGE: Misfit = Misfit::OutOfRange { nearest: None };
+const OUT_OF_RANGE: ValueFault = ValueFault::OutOfRange { nearest: None };
 
 impl KeyKind {
     /// Describes in words what is allowed.
@@ -138,28 +138,30 @@ impl KeyKind {
     }
 
     /// Parses a YAML scalar. `plain` is false for quoted text, which is always text.
-    pub(super) fn parse(&self, text: &str, plain: bool) -> Result<KeyValue, Misfit> {
+    pub(super) fn parse(&self, text: &str, plain: bool) -> Result<KeyValue, ValueFault> {
         if self.allows_none() && (text == NONE || plain && NULL.contains(&text)) {
             return Ok(KeyValue::None);
         }
         if plain && NULL.contains(&text) {
-            return Err(Misfit::Missing);
+            return Err(ValueFault::Missing);
         }
         let value = match self {
-            Self::Bool if plain => KeyValue::Bool(boolean(text).ok_or(Misfit::WrongType)?),
+            Self::Bool if plain => KeyValue::Bool(boolean(text).ok_or(ValueFault::WrongType)?),
             Self::Whole { .. } | Self::NoneOrWhole { .. } if plain => KeyValue::Whole(whole(text)?),
             Self::ZeroOrAtLeast(_) | Self::Number { .. } | Self::NoneOr { .. } if plain => {
                 KeyValue::Number(number(text)?)
             }
-            Self::Bool | Self::Whole { .. } | Self::ZeroOrAtLeast(_) | Self::List(_) => return Err(Misfit::WrongType),
-            Self::Number { .. } | Self::NoneOr { .. } | Self::NoneOrWhole { .. } => return Err(Misfit::WrongType),
+            Self::Bool | Self::Whole { .. } | Self::ZeroOrAtLeast(_) | Self::List(_) => {
+                return Err(ValueFault::WrongType);
+            }
+            Self::Number { .. } | Self::NoneOr { .. } | Self::NoneOrWhole { .. } => return Err(ValueFault::WrongType),
             Self::Choice(names) => KeyValue::Choice(named(text, names)?),
             Self::ChoiceOrFile { ending, .. } if text.ends_with(ending) => KeyValue::Text(text.to_string()),
             Self::ChoiceOrFile { names, .. } => KeyValue::Choice(named(text, names)?),
             Self::Text | Self::Document
-                if plain && (boolean(text).is_some() || number(text) != Err(Misfit::WrongType)) =>
+                if plain && (boolean(text).is_some() || number(text) != Err(ValueFault::WrongType)) =>
             {
-                return Err(Misfit::WrongType);
+                return Err(ValueFault::WrongType);
             }
             Self::Text | Self::Document => KeyValue::Text(text.to_string()),
         };
@@ -167,9 +169,9 @@ impl KeyKind {
     }
 
     /// Parses the next name of a list, after those in `list`.
-    pub(super) fn parse_item(&self, text: &str, list: &mut Vec<&'static str>) -> Result<(), Misfit> {
+    pub(super) fn parse_item(&self, text: &str, list: &mut Vec<&'static str>) -> Result<(), ValueFault> {
         let Self::List(names) = self else {
-            return Err(Misfit::WrongType);
+            return Err(ValueFault::WrongType);
         };
         let name = named(text, names)?;
         if list.contains(&name) {
@@ -180,7 +182,7 @@ impl KeyKind {
     }
 
     /// Checks that a value of the right type is allowed.
-    pub(super) fn check(&self, value: &KeyValue) -> Result<(), Misfit> {
+    pub(super) fn check(&self, value: &KeyValue) -> Result<(), ValueFault> {
         let fits = match (self, value) {
             (Self::Bool, KeyValue::Bool(_)) => true,
             (Self::Whole { min, max } | Self::NoneOrWhole { min, max }, KeyValue::Whole(number)) => {
@@ -207,17 +209,17 @@ impl KeyKind {
                 let strange = |c: char| c.is_control() && !matches!(c, '\n' | '\r' | '\t');
                 text.len() <= MAX_DOCUMENT && !text.chars().any(strange)
             }
-            _ => return Err(Misfit::WrongType),
+            _ => return Err(ValueFault::WrongType),
         };
         if fits { Ok(()) } else { Err(OUT_OF_RANGE) }
     }
 }
 
 /// Finds one of some names.
-fn named(text: &str, names: &[&'static str]) -> Result<&'static str, Misfit> {
+fn named(text: &str, names: &[&'static str]) -> Result<&'static str, ValueFault> {
     let nearest = || error::nearest(text, names.iter().copied());
     let found = names.iter().find(|name| **name == text).copied();
-    found.ok_or_else(|| Misfit::OutOfRange { nearest: nearest() })
+    found.ok_or_else(|| ValueFault::OutOfRange { nearest: nearest() })
 }
 
 /// Parses YAML 1.1's words for true and false, which PyYAML reads; `y` and `n` are text to it and so here.
@@ -231,13 +233,13 @@ fn boolean(text: &str) -> Option<bool> {
 
 /// Parses decimal digits with an optional sign and `_` between digits. A leading zero is refused: YAML 1.1 and 1.2 read
 /// it as different numbers.
-fn whole(text: &str) -> Result<u64, Misfit> {
+fn whole(text: &str) -> Result<u64, ValueFault> {
     let digits = text.strip_prefix(['+', '-']).unwrap_or(text);
     let decimal = digits.starts_with(|c: char| c.is_ascii_digit())
         && digits.bytes().all(|b| b.is_ascii_digit() || b == b'_')
         && (digits.len() == 1 || !digits.starts_with('0'));
     if !decimal {
-        return Err(Misfit::WrongType);
+        return Err(ValueFault::WrongType);
     }
     let number = digits.replace('_', "").parse().map_err(|_| OUT_OF_RANGE)?;
     if text.starts_with('-') && number != 0 {
@@ -248,7 +250,7 @@ fn whole(text: &str) -> Result<u64, Misfit> {
 }
 
 /// Parses an integer, or digits with a point or an exponent.
-fn number(text: &str) -> Result<f64, Misfit> {
+fn number(text: &str) -> Result<f64, ValueFault> {
     let unsigned = text.strip_prefix(['+', '-']).unwrap_or(text);
     if matches!(unsigned, ".inf" | ".Inf" | ".INF" | ".nan" | ".NaN" | ".NAN") {
         return Err(OUT_OF_RANGE);
@@ -256,10 +258,10 @@ fn number(text: &str) -> Result<f64, Misfit> {
     let float = unsigned.starts_with(|c: char| c.is_ascii_digit() || c == '.')
         && unsigned.bytes().all(|b| b.is_ascii_digit() || b"._eE+-".contains(&b))
         && unsigned.bytes().any(|b| b".eE".contains(&b));
-    if !float && whole(text) == Err(Misfit::WrongType) {
-        return Err(Misfit::WrongType);
+    if !float && whole(text) == Err(ValueFault::WrongType) {
+        return Err(ValueFault::WrongType);
     }
-    let number: f64 = text.replace('_', "").parse().map_err(|_| Misfit::WrongType)?;
+    let number: f64 = text.replace('_', "").parse().map_err(|_| ValueFault::WrongType)?;
     Ok(number + 0.0) // -0 becomes 0
 }
 

@@ -32,10 +32,10 @@ pub enum Scene {
 
 impl Scene {
     /// The scenes of BabyBench, in the order of the documentation.
-    pub const ALL: &'static [Self] = &[Self::Base, Self::Crib, Self::Cubes];
-    /// The library's own scenes, each of which has a task: `mobile` and `play`.
-    pub const OWN: &'static [Self] = &[Self::Mobile, Self::Playroom];
-    /// The names of [`Self::ALL`] and [`Self::OWN`] in a configuration file.
+    pub const BABYBENCH: &'static [Self] = &[Self::Base, Self::Crib, Self::Cubes];
+    /// All scenes of the library: those of BabyBench, and those of the tasks `mobile` and `play`.
+    pub const LIBRARY: &'static [Self] = &[Self::Base, Self::Crib, Self::Cubes, Self::Mobile, Self::Playroom];
+    /// The names of [`Self::LIBRARY`] in a configuration file.
     pub const NAMES: &'static [&'static str] = &["base", "crib", "cubes", "mobile", "playroom"];
     /// The ending of a document's path.
     pub const ENDING: &'static str = ".xml";
@@ -55,7 +55,7 @@ impl Scene {
     /// Returns the scene of the library with this name, or otherwise the document at this path; `None` if it is neither a name nor ends
     /// in `.xml`.
     pub fn from_name(name: &str) -> Option<Self> {
-        let known = Self::ALL.iter().chain(Self::OWN).find(|scene| scene.name() == name);
+        let known = Self::LIBRARY.iter().find(|scene| scene.name() == name);
         let file = || name.ends_with(Self::ENDING).then(|| Self::File(name.to_string()));
         known.cloned().or_else(file)
     }

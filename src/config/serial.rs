@@ -8,7 +8,7 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 use super::error::{self, Location};
 use super::keys::Key;
-use super::kinds::{KeyKind, KeyValue, Misfit};
+use super::kinds::{KeyKind, KeyValue, ValueFault};
 use super::table::KEYS;
 use super::{Config, ConfigError, yaml};
 
@@ -82,7 +82,7 @@ impl<'de> Visitor<'de> for ConfigVisitor {
             }
             let value = map.next_value_seed(ValueSeed { key })?;
             if !key.assign(&mut config, &value) {
-                let refusal = yaml::refusal(key, Misfit::WrongType, value.to_yaml(), place());
+                let refusal = yaml::refusal(key, ValueFault::WrongType, value.to_yaml(), place());
                 return Err(A::Error::custom(refusal));
             }
         }
@@ -133,7 +133,7 @@ struct ValueSeed {
 }
 
 impl ValueSeed {
-    fn refusal<E: serde::de::Error>(&self, misfit: Misfit, written: String) -> E {
+    fn refusal<E: serde::de::Error>(&self, misfit: ValueFault, written: String) -> E {
         E::custom(yaml::refusal(self.key, misfit, written, place()))
     }
 
@@ -191,7 +191,7 @@ impl<'de> Visitor<'de> for ValueSeed {
         match u64::try_from(number) {
             Ok(number) => self.visit_u64(number),
             Err(_) if matches!(self.key.kind, KeyKind::Whole { .. } | KeyKind::NoneOrWhole { .. }) => {
-                Err(self.refusal(Misfit::OutOfRange { nearest: None }, number.to_string()))
+                Err(self.refusal(ValueFault::OutOfRange { nearest: None }, number.to_string()))
             }
             Err(_) => self.visit_f64(number as f64),
         }
@@ -210,7 +210,7 @@ impl<'de> Visitor<'de> for ValueSeed {
                     Err(misfit) => Err(self.refusal(misfit, error::shown(text))),
                 }
             }
-            _ => Err(self.refusal(Misfit::WrongType, format!("'{}' in quotes", error::shown(text)))),
+            _ => Err(self.refusal(ValueFault::WrongType, format!("'{}' in quotes", error::shown(text)))),
         }
     }
 
@@ -218,7 +218,7 @@ impl<'de> Visitor<'de> for ValueSeed {
         if self.key.kind.allows_none() {
             return Ok(KeyValue::None);
         }
-        Err(self.refusal(Misfit::Missing, "null".to_string()))
+        Err(self.refusal(ValueFault::Missing, "null".to_string()))
     }
 
     fn visit_none<E: serde::de::Error>(self) -> Result<KeyValue, E> {
@@ -231,7 +231,7 @@ impl<'de> Visitor<'de> for ValueSeed {
 
     fn visit_seq<A: SeqAccess<'de>>(self, mut list: A) -> Result<KeyValue, A::Error> {
         if !matches!(self.key.kind, KeyKind::List(_)) {
-            return Err(self.refusal(Misfit::WrongType, "a list".to_string()));
+            return Err(self.refusal(ValueFault::WrongType, "a list".to_string()));
         }
         let mut names = Vec::new();
         while let Some(name) = list.next_element::<String>()? {
@@ -243,7 +243,7 @@ impl<'de> Visitor<'de> for ValueSeed {
     }
 
     fn visit_map<A: MapAccess<'de>>(self, _: A) -> Result<KeyValue, A::Error> {
-        Err(self.refusal(Misfit::WrongType, "a map".to_string()))
+        Err(self.refusal(ValueFault::WrongType, "a map".to_string()))
     }
 }
 

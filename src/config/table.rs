@@ -5,7 +5,7 @@ use super::choices::{
     ActuationModel, Behavior, Compat, DelayUnit, EngineKind, FacialExpression, Learner, Limb, RendererKind,
     StartingPosition, TouchFunction, TouchResponse, VisionOutput,
 };
-use super::keys::{Field, Key, config};
+use super::keys::{ConfigField, Key, config};
 use super::kinds::KeyKind;
 use super::outputs::VisionOutputs;
 use super::parts::BodyParts;

@@ -5,17 +5,17 @@
 
 use super::error::{self, Location};
 use super::keys::Key;
-use super::kinds::{KeyKind, KeyValue, Misfit};
+use super::kinds::{KeyKind, KeyValue, ValueFault};
 use super::table::KEYS;
 use super::{Config, ConfigError};
 use granit_parser::{Event, Marker, Options, Parser, ScalarStyle, ScanError};
 
 /// Line and column, both counted from 1.
-pub(super) type Position = (u32, u32);
+pub(super) type LineColumn = (u32, u32);
 
 /// Overwrites `config` with the keys of the text. Returns the position of the value of each key of [`KEYS`].
-pub(super) fn read(text: &str, file: &str, config: &mut Config) -> Result<Vec<Option<Position>>, ConfigError> {
-    let mut reader = Reader {
+pub(super) fn read(text: &str, file: &str, config: &mut Config) -> Result<Vec<Option<LineColumn>>, ConfigError> {
+    let mut reader = YamlReader {
         file,
         events: parser(text),
     };
@@ -25,7 +25,7 @@ pub(super) fn read(text: &str, file: &str, config: &mut Config) -> Result<Vec<Op
         let key = &KEYS[index];
         if !key.assign(config, &value) {
             let location = reader.location(position);
-            return Err(refusal(key, Misfit::WrongType, value.to_yaml(), location));
+            return Err(refusal(key, ValueFault::WrongType, value.to_yaml(), location));
         }
         positions[index] = Some(position);
     }
@@ -34,21 +34,21 @@ pub(super) fn read(text: &str, file: &str, config: &mut Config) -> Result<Vec<Op
 }
 
 /// Creates the error for a value that does not fit its key.
-pub(super) fn refusal(key: &'static Key, misfit: Misfit, value: String, location: Location) -> ConfigError {
+pub(super) fn refusal(key: &'static Key, misfit: ValueFault, value: String, location: Location) -> ConfigError {
     let (key, expected) = (key.name, key.kind.expected());
     match misfit {
-        Misfit::Missing => ConfigError::MissingValue {
+        ValueFault::Missing => ConfigError::MissingValue {
             location,
             key,
             expected,
         },
-        Misfit::WrongType => ConfigError::WrongType {
+        ValueFault::WrongType => ConfigError::WrongType {
             location,
             key,
             value,
             expected,
         },
-        Misfit::OutOfRange { nearest } => ConfigError::OutOfRange {
+        ValueFault::OutOfRange { nearest } => ConfigError::OutOfRange {
             location,
             key,
             value,
@@ -58,35 +58,35 @@ pub(super) fn refusal(key: &'static Key, misfit: Misfit, value: String, location
     }
 }
 
-type Events<'t> = Parser<'t, granit_parser::StrInput<'t>>;
+type YamlEvents<'t> = Parser<'t, granit_parser::StrInput<'t>>;
 
-fn parser(text: &str) -> Events<'_> {
+fn parser(text: &str) -> YamlEvents<'_> {
     let mut options = Options::default();
     options.set_emit_comments(false);
     Parser::new_from_str_with_options(text.strip_prefix('\u{feff}').unwrap_or(text), options)
 }
 
-struct Reader<'t> {
+struct YamlReader<'t> {
     file: &'t str,
-    events: Events<'t>,
+    events: YamlEvents<'t>,
 }
 
-impl<'t> Reader<'t> {
-    fn location(&self, position: Position) -> Location {
+impl<'t> YamlReader<'t> {
+    fn location(&self, position: LineColumn) -> Location {
         Location {
             file: self.file.to_string(),
             position: Some(position),
         }
     }
 
-    fn unsupported<T>(&self, position: Position, what: &str) -> Result<T, ConfigError> {
+    fn unsupported<T>(&self, position: LineColumn, what: &str) -> Result<T, ConfigError> {
         Err(ConfigError::Unsupported {
             location: self.location(position),
             what: what.to_string(),
         })
     }
 
-    fn next(&mut self) -> Result<(Event<'t>, Position), ConfigError> {
+    fn next(&mut self) -> Result<(Event<'t>, LineColumn), ConfigError> {
         match self.events.next() {
             Some(Ok((event, span))) => Ok((event, position(&span.start))),
             Some(Err(error)) => Err(self.syntax(&error)),
@@ -117,7 +117,7 @@ impl<'t> Reader<'t> {
     }
 
     /// Reads the next key, as an index into [`KEYS`], its value and the value's position; `None` after the last.
-    fn entry(&mut self, seen: &[Option<Position>]) -> Result<Option<(usize, KeyValue, Position)>, ConfigError> {
+    fn entry(&mut self, seen: &[Option<LineColumn>]) -> Result<Option<(usize, KeyValue, LineColumn)>, ConfigError> {
         let (name, at) = match self.next()? {
             (Event::MappingEnd, _) => return Ok(None),
             (Event::Scalar(name, _, anchor, tag), at) => {
@@ -149,7 +149,7 @@ impl<'t> Reader<'t> {
     }
 
     /// Reads the value of a key, and its position.
-    fn value(&mut self, key: &'static Key) -> Result<(KeyValue, Position), ConfigError> {
+    fn value(&mut self, key: &'static Key) -> Result<(KeyValue, LineColumn), ConfigError> {
         let (event, at) = self.next()?;
         let nested = match event {
             Event::Scalar(text, style, anchor, tag) => {
@@ -169,11 +169,16 @@ impl<'t> Reader<'t> {
             Event::SequenceStart(..) => "a list",
             _ => "a mapping",
         };
-        Err(refusal(key, Misfit::WrongType, nested.to_string(), self.location(at)))
+        Err(refusal(
+            key,
+            ValueFault::WrongType,
+            nested.to_string(),
+            self.location(at),
+        ))
     }
 
     /// Reads the names of a list that starts at `start`.
-    fn list(&mut self, key: &'static Key, start: Position) -> Result<KeyValue, ConfigError> {
+    fn list(&mut self, key: &'static Key, start: LineColumn) -> Result<KeyValue, ConfigError> {
         let mut names = Vec::new();
         loop {
             let (event, at) = self.next()?;
@@ -191,7 +196,12 @@ impl<'t> Reader<'t> {
                 Event::SequenceStart(..) => "a list in a list",
                 _ => "a mapping in a list",
             };
-            return Err(refusal(key, Misfit::WrongType, nested.to_string(), self.location(at)));
+            return Err(refusal(
+                key,
+                ValueFault::WrongType,
+                nested.to_string(),
+                self.location(at),
+            ));
         }
         let value = KeyValue::List(names);
         match key.kind.check(&value) {
@@ -212,7 +222,7 @@ impl<'t> Reader<'t> {
     }
 
     /// Refuses anchors and tags.
-    fn bare(&self, anchor: usize, tagged: bool, at: Position) -> Result<(), ConfigError> {
+    fn bare(&self, anchor: usize, tagged: bool, at: LineColumn) -> Result<(), ConfigError> {
         match (anchor, tagged) {
             (0, false) => Ok(()),
             (0, true) => self.unsupported(at, "a tag (`!`)"),
@@ -227,7 +237,7 @@ fn written(text: &str, plain: bool) -> String {
     if plain { text } else { format!("'{text}' in quotes") }
 }
 
-fn position(mark: &Marker) -> Position {
+fn position(mark: &Marker) -> LineColumn {
     let narrow = |count: usize| u32::try_from(count).unwrap_or(u32::MAX);
     (narrow(mark.line()), narrow(mark.col() + 1))
 }

@@ -24,8 +24,8 @@ use crate::physics::{Engine, Params, Shared};
 use crate::render::{RenderError, RendererPool};
 use crate::sensors::transform::Sense;
 use crate::sensors::{Proprioception, SkinLayout, Vestibular};
-use settled::{Settled, make_skin, task_model};
-use surface::Surface;
+use settled::{SettledScene, make_skin, task_model};
+use surface::SkinAndScenery;
 
 /// A configuration, its compiled model and its settled initial state. Made once; environments from it are cheap.
 ///
@@ -47,7 +47,7 @@ pub struct Blueprint {
     sizes: TaskSizes,
     model: Arc<Model>,
     engines: Arc<Engines>,
-    tables: Tables,
+    tables: SharedTables,
     paths: Option<Arc<Paths>>,
     init_qpos: Arc<Vec<f64>>,
     init_qvel: Arc<Vec<f64>>,
@@ -56,24 +56,24 @@ pub struct Blueprint {
     identity: Arc<Identity>,
     /// Identity, model and parameters before a program changed the model.
     origin: Arc<UnchangedModel>,
-    surface: Surface,
+    surface: SkinAndScenery,
 }
 
 /// Constant tables derived from configuration and model. Environments share them, because copies would compete for the caches.
 #[derive(Clone)]
-pub(super) struct Tables {
+pub(super) struct SharedTables {
     pub actuation: Arc<dyn Actuation>,
     pub proprioception: Arc<Proprioception>,
     pub vestibular: Option<Arc<Vestibular>>,
 }
 
-impl std::fmt::Debug for Tables {
+impl std::fmt::Debug for SharedTables {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.debug_struct("Tables").finish_non_exhaustive()
     }
 }
 
-impl Tables {
+impl SharedTables {
     fn new(config: &Config, model: &Model) -> Result<Self, EnvError> {
         let actuation: Arc<dyn Actuation> = actuation::build(model, config)?.into();
         let proprioception = Proprioception::new(model, config, actuation.observation_len());
@@ -109,7 +109,7 @@ impl Blueprint {
     /// decoded when something is first drawn, or immediately with `vision_active`.
     ///
     /// ```
-    /// use babybench::env::{BlueprintOptions, Goal, Task, Verdict};
+    /// use babybench::env::{BlueprintOptions, Goal, Task, StepReward};
     /// use babybench::{Blueprint, Config};
     ///
     /// #[derive(Clone, Debug)]
@@ -119,8 +119,8 @@ impl Blueprint {
     ///     fn name(&self) -> &str {
     ///         "wait"
     ///     }
-    ///     fn judge(&self, _goal: Goal<'_>) -> Verdict {
-    ///         Verdict { reward: 1.0, ..Verdict::default() }
+    ///     fn judge(&self, _goal: Goal<'_>) -> StepReward {
+    ///         StepReward { reward: 1.0, ..StepReward::default() }
     ///     }
     /// }
     ///
@@ -150,7 +150,7 @@ impl Blueprint {
         } else {
             None
         };
-        let surface = Surface {
+        let surface = SkinAndScenery {
             assets: scene_assets(&config, given.clone())?,
             given,
             skin,
@@ -166,12 +166,17 @@ impl Blueprint {
     }
 
     /// Binds the task to a model and lets it settle the scene.
-    fn settled(config: Config, mut task: Box<dyn Task>, model: Arc<Model>, surface: Surface) -> Result<Self, EnvError> {
+    fn settled(
+        config: Config,
+        mut task: Box<dyn Task>,
+        model: Arc<Model>,
+        surface: SkinAndScenery,
+    ) -> Result<Self, EnvError> {
         let engines = Arc::new(Engines::new(&config, &model)?);
         let sizes = task.bind(&config, &model)?;
         let paths = Paths::new(&config.mocap_motion, &model)?.map(Arc::new);
-        let tables = Tables::new(&config, &model)?;
-        let settled = Settled::new(&config, &*task, &engines, &*tables.actuation, &model, paths.as_deref())?;
+        let tables = SharedTables::new(&config, &model)?;
+        let settled = SettledScene::new(&config, &*task, &engines, &*tables.actuation, &model, paths.as_deref())?;
         let identity = Arc::new(Identity::new(&model, &config));
         let params = settled.params;
         let origin = UnchangedModel {
@@ -206,7 +211,7 @@ impl Blueprint {
     ) -> Result<Self, EnvError> {
         Ok(Self {
             engines: Arc::new(Engines::new(&self.config, &model)?),
-            tables: Tables::new(&self.config, &model)?,
+            tables: SharedTables::new(&self.config, &model)?,
             model,
             params,
             identity: Arc::new(self.origin.identity.with_changes(changes)),
@@ -237,7 +242,7 @@ impl Blueprint {
         } else {
             Arc::new(task_model(&config, &*self.task, &*self.surface.given)?)
         };
-        let surface = Surface {
+        let surface = SkinAndScenery {
             // the actuators of a custom scene are among them
             assets: scene_assets(&config, self.surface.given.clone())?,
             ..self.surface.clone()
@@ -280,7 +285,7 @@ impl Blueprint {
         let blueprint = Self {
             config: Arc::new(config),
             model: Arc::new(model),
-            surface: Surface {
+            surface: SkinAndScenery {
                 scenery: Arc::default(),
                 painting: RendererPool::default(),
                 gpu: Arc::default(),
@@ -305,7 +310,7 @@ impl Blueprint {
     }
 
     /// Returns the tables that all its environments share.
-    pub(super) fn tables(&self) -> &Tables {
+    pub(super) fn tables(&self) -> &SharedTables {
         &self.tables
     }
 

@@ -2,7 +2,7 @@
 
 use super::check_vector;
 use super::outcome::clear;
-use super::task::Passed;
+use super::task::ActionTiming;
 use crate::env::{Env, EnvError, Observation, Snapshot};
 use crate::math::{Quat, Vec3};
 
@@ -33,18 +33,18 @@ use crate::math::{Quat, Vec3};
 /// # Ok::<(), babybench::EnvError>(())
 /// ```
 #[derive(Debug)]
-pub struct Parts<'a> {
+pub struct ManualControl<'a> {
     env: &'a mut Env,
 }
 
 impl Env {
     /// Returns the parts of resets and steps, for programs that combine them differently.
-    pub fn by_hand(&mut self) -> Parts<'_> {
-        Parts { env: self }
+    pub fn by_hand(&mut self) -> ManualControl<'_> {
+        ManualControl { env: self }
     }
 }
 
-impl<'a> Parts<'a> {
+impl<'a> ManualControl<'a> {
     /// Starts an episode as [`Env::reset`] does, with the given start actions, shape (n, len), instead of random ones: each is applied
     /// for one physics step, whatever the behavior.
     ///
@@ -109,9 +109,9 @@ impl<'a> Parts<'a> {
     }
 
     /// Resets like MuJoCo's `mj_resetData`: time and controls are 0, positions are `qpos0`, velocities are 0 and the actuators rest. It
-    /// computes nothing from them; [`Parts::forward`] does. Delays and pain are cleared. Counters and information remain.
+    /// computes nothing from them; [`ManualControl::forward`] does. Delays and pain are cleared. Counters and information remain.
     ///
-    /// Under `compat: reference` a reset of the environment consists of this, [`Parts::forward`] at the settled state, and the start
+    /// Under `compat: reference` a reset of the environment consists of this, [`ManualControl::forward`] at the settled state, and the start
     /// actions.
     pub fn reset_data(&mut self) {
         self.env.senses.forget_picture();
@@ -166,7 +166,7 @@ impl<'a> Parts<'a> {
     pub fn set_action(&mut self, action: &[f32]) -> Result<(), EnvError> {
         self.env.check_action(action)?;
         self.env.physics.check_shape()?;
-        self.env.play().scene.set_action(action, Passed::InStep);
+        self.env.play().scene.set_action(action, ActionTiming::InStep);
         Ok(())
     }
 
@@ -208,11 +208,11 @@ impl<'a> Parts<'a> {
     }
 
     /// Shows the scene at positions (nq) and velocities (nv) as a step: computes poses, contacts and forces there, senses, calls
-    /// [`Parts::track`], computes outcome and reward, and counts a step in the information. Nothing moves: neither action nor time act on
+    /// [`ManualControl::track`], computes outcome and reward, and counts a step in the information. Nothing moves: neither action nor time act on
     /// positions, and accelerations are those with which the scene would continue from there.
     ///
     /// # Errors
-    /// As [`Parts::forward`] and [`Parts::observe`].
+    /// As [`ManualControl::forward`] and [`ManualControl::observe`].
     pub fn show(&mut self, qpos: &[f64], qvel: &[f64]) -> Result<(), EnvError> {
         self.env.senses.prepare();
         self.forward(qpos, qvel)?;

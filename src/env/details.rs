@@ -19,12 +19,12 @@ pub struct InfoDetails {
     pub vision_age: Option<f64>,
     /// Both ways to count hands in view, for the behavior `hand_regard`. [`BehaviorInfo`] holds one of them, by
     /// [`Compat`](crate::config::Compat).
-    pub regards: Option<Regards>,
+    pub regards: Option<RegardCounts>,
 }
 
 /// Steps in which a hand was in the central field of view of an eye, counted in two ways.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Regards {
+pub struct RegardCounts {
     /// As the API page describes it: within 15 degrees of the axis of the eye's camera.
     pub page: PerEyeAndHand<u64>,
     /// As the starter kit computes it: within 15 degrees of the -z axis of the eye's body, which points down the face.

@@ -3,9 +3,9 @@
 //! Most of a [`State`] is what every step computes anew: poses, inertias, contacts, constraint rows. If hundreds of environments took turns
 //! with a whole state each, every turn would load another one into the caches, though programs rarely read it. An environment of a vector
 //! therefore keeps only what decides how the run goes on, and works in a scratch state during a step or reset. A program that reads the rest
-//! gets it computed once more, with the same bits, by the call that computed it and from what that call began with ([`LastCall`]).
+//! gets it computed once more, with the same bits, by the call that computed it and from what that call began with ([`LastEngineCall`]).
 //!
-//! Transitions of [`Storage`]:
+//! Transitions of [`StateStorage`]:
 //!
 //! ```text
 //!            share (a new environment)        begin                       end
@@ -23,8 +23,8 @@ use crate::physics::State;
 
 /// What the last call of an engine began with, as far as the call, or a task after it, has changed it.
 #[derive(Clone, Debug, Default)]
-pub(in crate::env) struct LastCall {
-    call: Call,
+pub(in crate::env) struct LastEngineCall {
+    call: EngineCall,
     time: f64,
     step: u64,
     qpos: Vec<f64>,
@@ -35,7 +35,7 @@ pub(in crate::env) struct LastCall {
 
 /// A call of an engine.
 #[derive(Clone, Copy, Debug, Default)]
-pub(in crate::env) enum Call {
+pub(in crate::env) enum EngineCall {
     /// There was none.
     #[default]
     None,
@@ -43,9 +43,9 @@ pub(in crate::env) enum Call {
     Step,
 }
 
-impl LastCall {
+impl LastEngineCall {
     /// Notes what a call begins with.
-    pub fn note(&mut self, call: Call, state: &State) {
+    pub fn note(&mut self, call: EngineCall, state: &State) {
         (self.call, self.time, self.step) = (call, state.time, state.step);
         self.qpos.clone_from(&state.qpos);
         self.qvel.clone_from(&state.qvel);
@@ -55,7 +55,7 @@ impl LastCall {
 
     /// Makes the call once more. A state that is as the call left it then has the same computed quantities.
     fn repeat(&self, engines: &Engines, state: &mut State) {
-        if let Call::None = self.call {
+        if let EngineCall::None = self.call {
             return;
         }
         (state.time, state.step) = (self.time, self.step);
@@ -65,15 +65,15 @@ impl LastCall {
         state.qacc_warmstart.clone_from(&self.qacc_warmstart);
         // a scene that diverged diverges again, which the first call reported
         let _ = engines.lend(|engine| match self.call {
-            Call::Step => engine.step(state),
-            Call::None | Call::Forward => engine.forward(state),
+            EngineCall::Step => engine.step(state),
+            EngineCall::None | EngineCall::Forward => engine.forward(state),
         });
     }
 }
 
 /// The work for which an environment of a vector gets a scratch state.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Work {
+pub(crate) enum ScratchUse {
     /// A step, which goes on from the state.
     Step,
     /// A reset, which overwrites it.
@@ -82,17 +82,17 @@ pub(crate) enum Work {
 
 /// The state of an environment.
 pub(in crate::env) struct EnvState {
-    /// The state: all of it in [`Storage::Whole`], what decides how the run goes on in [`Storage::Split`], nothing in
-    /// [`Storage::Working`].
+    /// The state: all of it in [`StateStorage::Whole`], what decides how the run goes on in [`StateStorage::Split`], nothing in
+    /// [`StateStorage::Working`].
     kept: Box<State>,
-    storage: Storage,
-    /// Whether episodes begin in [`Storage::Split`].
+    storage: StateStorage,
+    /// Whether episodes begin in [`StateStorage::Split`].
     shares: bool,
-    last_call: LastCall,
+    last_call: LastEngineCall,
 }
 
 /// Where the parts of a state are.
-enum Storage {
+enum StateStorage {
     /// The environment keeps all of it.
     Whole,
     /// The environment keeps what decides how the run goes on. A program that reads the rest finds it here, computed again.
@@ -111,9 +111,9 @@ impl EnvState {
     pub fn new(state: State) -> Self {
         Self {
             kept: state.into(),
-            storage: Storage::Whole,
+            storage: StateStorage::Whole,
             shares: false,
-            last_call: LastCall::default(),
+            last_call: LastEngineCall::default(),
         }
     }
 
@@ -121,7 +121,7 @@ impl EnvState {
     pub fn copy(&self, engines: &Engines) -> Self {
         match &self.storage {
             // computed for the copy alone, as the original may never be read
-            Storage::Split(read) if read.get().is_none() => Self::new(*self.computed_again(engines)),
+            StateStorage::Split(read) if read.get().is_none() => Self::new(*self.computed_again(engines)),
             _ => Self::new(self.get(engines).clone()),
         }
     }
@@ -129,43 +129,43 @@ impl EnvState {
     /// Returns the state.
     pub fn get(&self, engines: &Engines) -> &State {
         match &self.storage {
-            Storage::Whole => &self.kept,
-            Storage::Split(read) => read.get_or_init(|| self.computed_again(engines)),
-            Storage::Working(scratch) => scratch,
+            StateStorage::Whole => &self.kept,
+            StateStorage::Split(read) => read.get_or_init(|| self.computed_again(engines)),
+            StateStorage::Working(scratch) => scratch,
         }
     }
 
     /// Returns the state, of which only what decides how the run goes on may be there.
     pub fn dynamic(&self) -> &State {
         match &self.storage {
-            Storage::Whole | Storage::Split(_) => &self.kept,
-            Storage::Working(scratch) => scratch,
+            StateStorage::Whole | StateStorage::Split(_) => &self.kept,
+            StateStorage::Working(scratch) => scratch,
         }
     }
 
     /// Returns the state, to change it, and where calls of engines are to be noted, if they are. Between steps the environment then keeps
     /// all of it until its next episode, as a program may change anything.
-    pub fn parts(&mut self, engines: &Engines) -> (&mut State, Option<&mut LastCall>) {
+    pub fn parts(&mut self, engines: &Engines) -> (&mut State, Option<&mut LastEngineCall>) {
         self.keep_all(engines);
         match &mut self.storage {
-            Storage::Working(scratch) => (scratch, Some(&mut self.last_call)),
-            Storage::Whole | Storage::Split(_) => (&mut self.kept, None),
+            StateStorage::Working(scratch) => (scratch, Some(&mut self.last_call)),
+            StateStorage::Whole | StateStorage::Split(_) => (&mut self.kept, None),
         }
     }
 
-    /// Goes from [`Storage::Split`] to [`Storage::Whole`].
+    /// Goes from [`StateStorage::Split`] to [`StateStorage::Whole`].
     fn keep_all(&mut self, engines: &Engines) {
-        if let Storage::Split(read) = &mut self.storage {
+        if let StateStorage::Split(read) = &mut self.storage {
             let read = read.take();
             self.kept = read.unwrap_or_else(|| self.computed_again(engines));
-            self.storage = Storage::Whole;
+            self.storage = StateStorage::Whole;
         }
     }
 
     /// Lets steps and resets work in scratch states from now on. What is computed is dropped.
     pub fn share(&mut self) {
         self.kept.drop_computed();
-        self.storage = Storage::Split(OnceLock::new());
+        self.storage = StateStorage::Split(OnceLock::new());
         self.shares = true;
     }
 
@@ -176,24 +176,26 @@ impl EnvState {
 
     /// Takes a scratch state for a step or reset that begins with a call of an engine, if the environment shares. The computed part of the
     /// scratch state is unspecified.
-    pub fn begin(&mut self, work: Work, engines: &Engines) {
+    pub fn begin(&mut self, work: ScratchUse, engines: &Engines) {
         match (&self.storage, work) {
-            (Storage::Split(read), Work::Step) if read.get().is_some() => self.keep_all(engines),
-            (Storage::Split(_) | Storage::Whole, Work::Reset) if self.shares => self.share(),
+            (StateStorage::Split(read), ScratchUse::Step) if read.get().is_some() => self.keep_all(engines),
+            (StateStorage::Split(_) | StateStorage::Whole, ScratchUse::Reset) if self.shares => self.share(),
             _ => {}
         }
-        if let Storage::Split(_) = self.storage {
+        if let StateStorage::Split(_) = self.storage {
             let mut scratch = engines.take_state();
             scratch.swap_dynamic(&mut self.kept);
-            self.storage = Storage::Working(scratch);
+            self.storage = StateStorage::Working(scratch);
         }
     }
 
     /// Gives the scratch state back, if there is one.
     pub fn end(&mut self, engines: &Engines) {
-        if let Storage::Working(scratch) = &mut self.storage {
+        if let StateStorage::Working(scratch) = &mut self.storage {
             scratch.swap_dynamic(&mut self.kept);
-            if let Storage::Working(scratch) = std::mem::replace(&mut self.storage, Storage::Split(OnceLock::new())) {
+            if let StateStorage::Working(scratch) =
+                std::mem::replace(&mut self.storage, StateStorage::Split(OnceLock::new()))
+            {
                 engines.put_state(scratch);
             }
         }
@@ -212,8 +214,8 @@ impl EnvState {
     /// It computes all of them once more.
     pub fn unshareable(&self, engines: &Engines) -> Option<&'static str> {
         match &self.storage {
-            Storage::Working(scratch) => difference(scratch, &self.computed_again(engines)),
-            Storage::Whole | Storage::Split(_) => None,
+            StateStorage::Working(scratch) => difference(scratch, &self.computed_again(engines)),
+            StateStorage::Whole | StateStorage::Split(_) => None,
         }
     }
 }

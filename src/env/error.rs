@@ -5,7 +5,7 @@ use thiserror::Error;
 use crate::actuation::ActuationError;
 use crate::config::ConfigError;
 use crate::env::{ModelChangeError, PathError, SnapshotError};
-use crate::mimo::{GrowthError, LockError, RoomError, SceneError};
+use crate::mimo::{CustomSceneError, GrowthError, LockError, SceneError};
 use crate::mjcf_loader::LoadError;
 use crate::physics::EngineError;
 #[cfg(feature = "rapier")]
@@ -26,7 +26,7 @@ pub enum EnvError {
     Load(#[from] LoadError),
     /// A custom scene breaks a rule.
     #[error(transparent)]
-    Room(#[from] RoomError),
+    CustomScene(#[from] CustomSceneError),
     /// The paths of the configuration cannot be read, or name bodies that the scene does not have.
     #[error(transparent)]
     MocapMotion(#[from] PathError),
@@ -128,7 +128,7 @@ impl From<SceneError> for EnvError {
     fn from(error: SceneError) -> Self {
         match error {
             SceneError::Load(error) => error.into(),
-            SceneError::Room(error) => error.into(),
+            SceneError::CustomScene(error) => error.into(),
             SceneError::Growth(error) => error.into(),
             SceneError::Engine(error) => error.into(),
         }

@@ -11,7 +11,7 @@ use crate::spaces::NumpyRng;
 
 /// The state of the picture of the last observation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Picture {
+pub(super) enum PictureStatus {
     /// Drawn, in the observation.
     Drawn,
     /// Not drawn yet.
@@ -35,7 +35,7 @@ impl Senses {
     /// Transforms the images that have just been drawn.
     pub(super) fn take_picture(&mut self, rng: &mut NumpyRng) {
         self.drawn += u64::from(self.eyes_look());
-        self.picture = Picture::Drawn;
+        self.picture = PictureStatus::Drawn;
         for sense in Sense::EYES {
             self.transform(sense, rng);
         }
@@ -48,13 +48,13 @@ impl Senses {
 
     /// Returns whether there is a picture to draw for programs that draw the eyes themselves.
     pub(super) fn wants_drawing(&self) -> bool {
-        self.picture == Picture::Waiting || !self.is_lazy()
+        self.picture == PictureStatus::Waiting || !self.is_lazy()
     }
 
     /// Drops a picture that was not requested, because the scene that it would show moves on.
     pub(super) fn forget_picture(&mut self) {
-        if self.picture == Picture::Waiting {
-            self.picture = Picture::Gone;
+        if self.picture == PictureStatus::Waiting {
+            self.picture = PictureStatus::Gone;
         }
     }
 }
@@ -82,7 +82,7 @@ impl Env {
     /// # Errors
     /// As the renderer.
     pub fn look(&mut self) -> Result<Observation<'_>, EnvError> {
-        if self.senses.picture == Picture::Waiting {
+        if self.senses.picture == PictureStatus::Waiting {
             draw_eyes([&mut *self])?;
         }
         Ok(self.observation())
@@ -132,7 +132,7 @@ pub fn draw_eyes<'e>(environments: impl IntoIterator<Item = &'e mut Env>) -> Res
 
 /// Draws the eyes of the environments with a GPU renderer, in one submission for each GPU.
 fn draw_on_gpus(environments: &mut [&mut Env]) -> Result<(), EnvError> {
-    let mut batches: Vec<Batch> = Vec::new();
+    let mut batches: Vec<GpuBatch> = Vec::new();
     for env in environments.iter_mut().filter(|env| env.senses.eyes_look()) {
         let state = env.physics.state();
         let Some(vision) = &env.senses.vision else { continue };
@@ -142,7 +142,7 @@ fn draw_on_gpus(environments: &mut [&mut Env]) -> Result<(), EnvError> {
         let known = batches.iter().position(|b| Arc::ptr_eq(&b.gpu, gpu));
         let index = known.unwrap_or(batches.len());
         if known.is_none() {
-            batches.push(Batch::new(gpu.clone()));
+            batches.push(GpuBatch::new(gpu.clone()));
         }
         batches[index].requests.extend(vision.requests(state));
         let eyes = env.senses.eyes.each_mut().map(EyeImages::buffers);
@@ -158,13 +158,13 @@ fn draw_on_gpus(environments: &mut [&mut Env]) -> Result<(), EnvError> {
 }
 
 /// The pictures drawn by one GPU.
-struct Batch<'e> {
+struct GpuBatch<'e> {
     gpu: SharedGpu,
     requests: Vec<RenderRequest<'e>>,
     images: Vec<ImageBuffers<'e>>,
 }
 
-impl Batch<'_> {
+impl GpuBatch<'_> {
     fn new(gpu: SharedGpu) -> Self {
         Self {
             gpu,

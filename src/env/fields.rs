@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use crate::env::task::measures_of;
 use crate::env::{
-    BehaviorInfo, EYE_HAND_PAIRS, Info, InfoDetails, Measures, Outcome, PerEyeAndHand, PerHand, Regards, TaskInfo,
+    BehaviorInfo, EYE_HAND_PAIRS, Info, InfoDetails, Measures, Outcome, PerEyeAndHand, PerHand, RegardCounts, TaskInfo,
 };
 
 /// Keys of the geoms that the palms have touched, right and left.
@@ -139,7 +139,7 @@ impl InfoDetails {
             .gaze_angles
             .map(|angles| ("gaze_angles", InfoValue::Angles(angles)));
         let age = self.vision_age.map(|age| ("vision_age", InfoValue::Number(age)));
-        let regards = self.regards.map(|Regards { page, kit }| {
+        let regards = self.regards.map(|RegardCounts { page, kit }| {
             [
                 ("page_regards", InfoValue::Counts(page)),
                 ("kit_regards", InfoValue::Counts(kit)),

@@ -17,7 +17,6 @@ pub(crate) mod info;
 mod model_change;
 mod notices;
 pub(crate) mod observation;
-mod other;
 mod outcome;
 mod paths;
 mod physics;
@@ -25,6 +24,7 @@ mod pipeline;
 mod placed;
 #[cfg(feature = "rapier")]
 mod rapier;
+mod second_infant;
 mod senses;
 mod sensing;
 #[cfg(feature = "eval")]
@@ -36,8 +36,8 @@ mod viewer;
 mod workspace;
 
 pub use blueprint::{Blueprint, BlueprintOptions};
-pub use by_hand::Parts;
-pub use details::{InfoDetails, PartNames, Regards};
+pub use by_hand::ManualControl;
+pub use details::{InfoDetails, PartNames, RegardCounts};
 pub use error::EnvError;
 pub use eyes::draw_eyes;
 pub use fields::{InfoField, InfoValue};
@@ -50,38 +50,39 @@ pub use info::{BehaviorInfo, EYE_HAND_PAIRS, Measures, PerEyeAndHand, PerHand, T
 pub use model_change::CHANGEABLE;
 pub use model_change::ModelChangeError;
 pub use observation::{Observation, Step};
-pub use other::OtherInfant;
 #[cfg(feature = "eval")]
 pub(crate) use outcome::reports_outcome;
 pub use paths::PathError;
+pub use second_infant::SecondInfant;
 pub use senses::Senses;
 pub use sensing::SensesMut;
 #[cfg(feature = "eval")]
-pub use serial::Detailed;
+pub use serial::InfoWithDetails;
 pub use snapshot::SnapshotInfo;
 pub use snapshot::{Snapshot, SnapshotError};
 pub use stage::{EnvProbe, EnvStage};
 pub use task::{
-    CloneTask, Goal, GoalError, Outcome, Task, TaskDocument, TaskEvent, TaskScene, TaskSizes, TaskView, Verdict,
+    CloneTask, Goal, GoalError, Outcome, StepReward, Task, TaskDocument, TaskEvent, TaskScene, TaskSizes, TaskView,
 };
 #[cfg(feature = "eval")]
 pub(crate) use viewer::room_camera;
 pub use viewer::{ViewFrom, Viewer};
 
-pub(crate) use env_state::Work;
+pub(crate) use env_state::ScratchUse;
 
 use std::sync::Arc;
 
 use crate::actuation::Actuation;
 use crate::config::Config;
 use crate::mimo::{LockReport, LockTarget};
+use crate::model::Model;
 use crate::spaces::NumpyRng;
 use action_delay::ActionDelay;
 use episode::{Episode, StagedTask};
 use outcome::clear;
 use physics::Physics;
 use placed::check_vector;
-use task::{Goals, Passed};
+use task::{ActionTiming, Goals};
 
 /// A BabyBench environment.
 ///
@@ -241,7 +242,7 @@ impl Env {
         applied.clear();
         applied.extend_from_slice(action);
         task.before_step(applied);
-        scene.set_action(applied, Passed::InStep);
+        scene.set_action(applied, ActionTiming::InStep);
         let stepped = scene.advance(frame_skip).and_then(|()| task.after_step(&mut scene));
         if let Err(e) = stepped {
             self.episode.ready = false;
@@ -259,24 +260,13 @@ impl Env {
     /// Checks that an action has the right length and finite numbers.
     pub(crate) fn check_action(&self, action: &[f32]) -> Result<(), EnvError> {
         let expected = self.action_space().len();
-        if action.len() != expected {
-            return Err(EnvError::ActionLength {
-                found: action.len(),
-                expected,
-            });
-        }
-        if let Some((index, &value)) = action.iter().enumerate().find(|(_, a)| !a.is_finite()) {
-            let (driven, others) = (self.actuation.actuators(), self.actuation.others());
-            let own = expected - others.len();
-            let id = if index < own {
-                driven.get(index % driven.len().max(1))
-            } else {
-                others.get(index - own)
-            };
-            let actuator = id.map(|&id| self.model().actuator_name[id].clone()).unwrap_or_default();
-            return Err(EnvError::ActionNotFinite { index, actuator, value });
-        }
-        Ok(())
+        check_numbers(self.model(), action, expected, |index| {
+            let (driven, extra) = (self.actuation.actuators(), self.actuation.extra_actuators());
+            match index.checked_sub(expected - extra.len()) {
+                None => driven.get(index % driven.len().max(1)).copied(),
+                Some(index) => extra.get(index).copied(),
+            }
+        })
     }
 
     /// Updates the behavior's counters.
@@ -333,6 +323,27 @@ impl Env {
     /// Seeds the generator of [`Env::sample_action`] and of start actions.
     pub fn seed_action_space(&mut self, seed: u64) {
         self.rng = NumpyRng::seed(seed);
+    }
+}
+
+/// Checks the length of an action and that its numbers are finite. `actuator` returns the actuator of a number, by id.
+fn check_numbers(
+    model: &Model,
+    action: &[f32],
+    expected: usize,
+    actuator: impl Fn(usize) -> Option<usize>,
+) -> Result<(), EnvError> {
+    let found = action.len();
+    if found != expected {
+        return Err(EnvError::ActionLength { found, expected });
+    }
+    match action.iter().enumerate().find(|(_, a)| !a.is_finite()) {
+        None => Ok(()),
+        Some((index, &value)) => {
+            let name = actuator(index).and_then(|id| model.actuator_name.get(id));
+            let actuator = name.cloned().unwrap_or_default();
+            Err(EnvError::ActionNotFinite { index, actuator, value })
+        }
     }
 }
 

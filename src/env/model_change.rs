@@ -139,12 +139,12 @@ const AT_LEAST_ZERO: [&str; 6] = [
 const ABOVE_ZERO: [&str; 4] = ["opt.timestep", "body_mass", "body_inertia", "geom_size"];
 
 /// A model before and after a change.
-struct Change {
+struct ModelChange {
     before: Arrays,
     after: Arrays,
 }
 
-impl Change {
+impl ModelChange {
     /// Checks the changes.
     fn check(&self) -> Result<(), ModelChangeError> {
         let (before, after) = (rows(&self.before), rows(&self.after));
@@ -313,7 +313,7 @@ impl Env {
         let before = self.model_arrays();
         let mut after = before.clone();
         edit(&mut after);
-        let change = Change { before, after };
+        let change = ModelChange { before, after };
         change.check()?;
         if self.config().actuation_model == ActuationModel::Muscle && change.concerns("actuator_gear") {
             return Err(ModelChangeError::Muscles.into());
@@ -332,7 +332,7 @@ impl Env {
 
 impl Blueprint {
     /// Returns the blueprint of environments with the changed model.
-    fn changed(&self, change: &Change) -> Result<Self, EnvError> {
+    fn changed(&self, change: &ModelChange) -> Result<Self, EnvError> {
         let model = Arc::new(self.model().edited(|arrays| change.apply(rows_mut(arrays))));
         let mut params = self.params().clone();
         change.apply_to(&mut params, &model);

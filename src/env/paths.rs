@@ -25,11 +25,11 @@ pub struct PathError {
 pub(super) struct Paths {
     /// The times of the poses, s, ascending. The first is the start of an episode.
     times: Vec<f64>,
-    bodies: Vec<Path>,
+    bodies: Vec<BodyPath>,
 }
 
 #[derive(Debug, PartialEq)]
-struct Path {
+struct BodyPath {
     /// Its number among the mocap bodies.
     mocap: usize,
     pos: Vec<Vec3>,
@@ -38,7 +38,7 @@ struct Path {
 }
 
 /// The columns of a body's values in the text.
-struct Columns<'a> {
+struct BodyColumns<'a> {
     body: &'a str,
     mocap: usize,
     places: [Option<usize>; 7],
@@ -57,7 +57,7 @@ impl Paths {
         let names: Vec<&str> = head.split(',').map(str::trim).collect();
         let columns = columns(&names, model).map_err(|reason| fault(line, reason))?;
         let mut times = Vec::new();
-        let mut bodies: Vec<Path> = columns.iter().map(Path::of).collect();
+        let mut bodies: Vec<BodyPath> = columns.iter().map(BodyPath::of).collect();
         for (line, row) in lines {
             let values = numbers(row, names.len()).map_err(|reason| fault(line, reason))?;
             // from the first time on, whatever it is
@@ -110,8 +110,8 @@ impl Paths {
     }
 }
 
-impl Path {
-    fn of(columns: &Columns) -> Self {
+impl BodyPath {
+    fn of(columns: &BodyColumns) -> Self {
         Self {
             mocap: columns.mocap,
             pos: Vec::new(),
@@ -119,7 +119,7 @@ impl Path {
         }
     }
 
-    fn push(&mut self, columns: &Columns, values: &[f64]) -> Result<(), String> {
+    fn push(&mut self, columns: &BodyColumns, values: &[f64]) -> Result<(), String> {
         let [x, y, z, rest @ ..] = columns.places.map(|place| place.map(|place| values[place]));
         let zero = |value: Option<f64>| value.unwrap_or_default();
         self.pos.push([x, y, z].map(zero));
@@ -135,14 +135,14 @@ impl Path {
 }
 
 /// Finds the columns of each body.
-fn columns<'a>(names: &[&'a str], model: &Model) -> Result<Vec<Columns<'a>>, String> {
+fn columns<'a>(names: &[&'a str], model: &Model) -> Result<Vec<BodyColumns<'a>>, String> {
     if names.first() != Some(&"time") {
         let found = quoted(names.first().copied().unwrap_or_default());
         return Err(format!(
             "the first name is \"{found}\": expected time, then BODY.x, BODY.y and BODY.z"
         ));
     }
-    let mut all: Vec<Columns> = Vec::new();
+    let mut all: Vec<BodyColumns> = Vec::new();
     for (place, name) in names.iter().enumerate().skip(1) {
         let split = name.rsplit_once('.');
         let value = split.and_then(|(_, value)| VALUES.iter().position(|known| *known == value));
@@ -157,7 +157,7 @@ fn columns<'a>(names: &[&'a str], model: &Model) -> Result<Vec<Columns<'a>>, Str
             Some(k) => k,
             None => {
                 let (mocap, places) = (mocap(body, model)?, [None; 7]);
-                all.push(Columns { body, mocap, places });
+                all.push(BodyColumns { body, mocap, places });
                 all.len() - 1
             }
         };

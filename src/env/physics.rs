@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use crate::actuation::Actuation;
 use crate::env::engines::{EngineSource, Engines};
-use crate::env::env_state::{Call, EnvState, LastCall, Work};
+use crate::env::env_state::{EngineCall, EnvState, LastEngineCall, ScratchUse};
 use crate::env::{Blueprint, EnvError};
 use crate::mimo::{LockReport, LockTarget, lock, lock_of, unlock};
 use crate::model::Model;
@@ -82,7 +82,7 @@ impl Physics {
     }
 
     /// Takes a scratch state for a step or reset, if the environment shares: see [`EnvState::begin`].
-    pub fn begin(&mut self, work: Work) {
+    pub fn begin(&mut self, work: ScratchUse) {
         self.state.begin(work, &self.engines);
     }
 
@@ -97,7 +97,14 @@ impl Physics {
     }
 
     /// Returns where steps get their engine from, the state that it advances, where its calls are noted, and the parameters of a reset.
-    pub fn parts(&mut self) -> (EngineSource<'_>, &mut State, Option<&mut LastCall>, &mut Shared<Params>) {
+    pub fn parts(
+        &mut self,
+    ) -> (
+        EngineSource<'_>,
+        &mut State,
+        Option<&mut LastEngineCall>,
+        &mut Shared<Params>,
+    ) {
         let (state, last_call) = self.state.parts(&self.engines);
         let source = match &mut self.own {
             Some(own) => EngineSource::Own(&mut **own),
@@ -131,7 +138,7 @@ impl Physics {
     pub fn forward(&mut self) -> Result<(), EngineError> {
         let (mut engine, state, last_call, _) = self.parts();
         if let Some(last_call) = last_call {
-            last_call.note(Call::Forward, state);
+            last_call.note(EngineCall::Forward, state);
         }
         engine.lend(|engine| engine.forward(state))
     }

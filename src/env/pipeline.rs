@@ -3,17 +3,17 @@
 use crate::config::{Compat, Config, Delays};
 use crate::model::Model;
 use crate::sensors::EYES;
-use crate::sensors::transform::{Acuity, AcuityOptions, Delay, Foveation, Hold, Noise, Sense, Signal, Transform};
+use crate::sensors::transform::{Acuity, AcuityOptions, Delay, Foveation, Noise, SampleHold, Sense, Signal, Transform};
 use crate::spaces::NumpyRng;
 
 /// A transform, and whether the configuration asked for it.
 #[derive(Clone)]
-struct Stage {
+struct ConfiguredTransform {
     transform: Box<dyn Transform>,
     configured: bool,
 }
 
-impl Stage {
+impl ConfiguredTransform {
     /// Returns a transform that the configuration asks for.
     fn configured(transform: Box<dyn Transform>) -> Self {
         let configured = true;
@@ -23,20 +23,20 @@ impl Stage {
 
 /// The transforms of a sense.
 #[derive(Clone, Default)]
-struct Chain {
-    stages: Vec<Stage>,
+struct TransformChain {
+    stages: Vec<ConfiguredTransform>,
     /// The number of leading stages that depend on the current values only: acuity, foveation.
     optics: usize,
     /// For a sense with a rate of its own: its last sample, after the leading stages. Later stages, a delay and those that a program
     /// added, run in every step.
-    hold: Option<(usize, Hold)>,
+    hold: Option<(usize, SampleHold)>,
 }
 
 /// The transforms of all senses.
 #[derive(Clone, Default)]
 pub(super) struct Pipeline {
     /// By sense, in the order of [`Sense::ALL`].
-    chains: [Chain; Sense::ALL.len()],
+    chains: [TransformChain; Sense::ALL.len()],
     /// Whether each sense has transforms. It is read several times in every step, and is mostly false.
     changes: [bool; Sense::ALL.len()],
 }
@@ -48,28 +48,30 @@ impl Pipeline {
         if let (&Signal::Eye { height, width, .. }, Some(eye)) = (like, sense.eye()) {
             let optics = optics(model, config, eye, [width, height]);
             chain.optics = optics.len();
-            chain.stages.extend(optics.into_iter().map(Stage::configured));
+            chain
+                .stages
+                .extend(optics.into_iter().map(ConfiguredTransform::configured));
         }
         let deviation = sense.noise(config);
         if deviation > 0.0 {
             let noise = Noise::new(deviation);
             let magnitudes = matches!(like, Signal::Skin(values) if values.width() == 1);
             let noise = if magnitudes { noise.of_magnitudes() } else { noise };
-            chain.stages.push(Stage::configured(Box::new(noise)));
+            chain.stages.push(ConfiguredTransform::configured(Box::new(noise)));
         }
         if sense.rate(config).is_some() {
-            chain.hold = Some((chain.stages.len(), Hold::new(like)));
+            chain.hold = Some((chain.stages.len(), SampleHold::new(like)));
         }
         let steps = effective(config, sense.delay(config));
         if steps > 0 {
             let delay = Delay::new(steps, Delays::step_ms(config.frame_skip), like);
-            chain.stages.push(Stage::configured(Box::new(delay)));
+            chain.stages.push(ConfiguredTransform::configured(Box::new(delay)));
         }
         self.note_changes();
     }
 
     fn note_changes(&mut self) {
-        let changes = |chain: &Chain| !chain.stages.is_empty() || chain.hold.is_some();
+        let changes = |chain: &TransformChain| !chain.stages.is_empty() || chain.hold.is_some();
         self.changes = self.chains.each_ref().map(changes);
     }
 
@@ -92,8 +94,8 @@ impl Pipeline {
 
     /// Transforms the values of a sense. Without a sample in this step they are those of the last one.
     pub fn apply(&mut self, sense: Sense, mut signal: Signal<'_>, looked: bool, rng: &mut NumpyRng) {
-        let Chain { stages, hold, .. } = &mut self.chains[sense as usize];
-        let mut apply = |stages: &mut [Stage], signal: &mut Signal<'_>| {
+        let TransformChain { stages, hold, .. } = &mut self.chains[sense as usize];
+        let mut apply = |stages: &mut [ConfiguredTransform], signal: &mut Signal<'_>| {
             for stage in stages {
                 stage.transform.apply(signal.reborrow(), rng);
             }
@@ -116,7 +118,9 @@ impl Pipeline {
     /// Appends a transform.
     pub fn add(&mut self, sense: Sense, transform: Box<dyn Transform>) {
         let configured = false;
-        self.chains[sense as usize].stages.push(Stage { transform, configured });
+        self.chains[sense as usize]
+            .stages
+            .push(ConfiguredTransform { transform, configured });
         self.note_changes();
     }
 
@@ -126,7 +130,7 @@ impl Pipeline {
             let stages = std::mem::take(&mut others.stages);
             let (configured, added) = stages.into_iter().partition(|stage| stage.configured);
             others.stages = configured;
-            let added: Vec<Stage> = added;
+            let added: Vec<ConfiguredTransform> = added;
             own.stages.extend(added);
         }
         self.note_changes();
@@ -155,7 +159,7 @@ impl Pipeline {
 
     /// Restores what the same transforms saved, from the front of `bytes`; `false` if the data do not fit.
     pub fn load(&mut self, bytes: &mut &[u8]) -> bool {
-        self.chains.iter_mut().all(|Chain { stages, hold, .. }| {
+        self.chains.iter_mut().all(|TransformChain { stages, hold, .. }| {
             let loaded = stages
                 .iter_mut()
                 .all(|stage| take_part(bytes).is_some_and(|part| stage.transform.load(part)));
@@ -168,14 +172,14 @@ impl Pipeline {
 
     /// Returns the memory of all transforms, bytes.
     pub fn memory(&self) -> usize {
-        let of_chain = |chain: &Chain| {
+        let of_chain = |chain: &TransformChain| {
             let stages = chain.stages.iter().map(|stage| stage.transform.memory());
             stages.sum::<usize>() + chain.hold.as_ref().map_or(0, |(_, hold)| hold.memory())
         };
         self.chains.iter().map(of_chain).sum()
     }
 
-    fn stages_mut(&mut self) -> impl Iterator<Item = &mut Stage> {
+    fn stages_mut(&mut self) -> impl Iterator<Item = &mut ConfiguredTransform> {
         self.chains.iter_mut().flat_map(|chain| &mut chain.stages)
     }
 }

@@ -4,9 +4,9 @@ use std::sync::Arc;
 
 use crate::actuation::Actuation;
 use crate::config::VisionOutput;
-use crate::env::blueprint::Tables;
+use crate::env::blueprint::SharedTables;
 use crate::env::clock::Clock;
-use crate::env::eyes::Picture;
+use crate::env::eyes::PictureStatus;
 use crate::env::pipeline::Pipeline;
 use crate::env::task::TaskSizes;
 use crate::env::{Blueprint, EnvError, Observation, missing_camera};
@@ -45,7 +45,7 @@ pub struct Senses {
     pub(super) vision_deferred: bool,
     /// Whether pictures are drawn on request.
     pub(super) vision_lazy: bool,
-    pub(super) picture: Picture,
+    pub(super) picture: PictureStatus,
     /// Number of times the eyes were drawn.
     pub(super) drawn: u64,
     /// Number of observations.
@@ -64,7 +64,7 @@ impl std::fmt::Debug for Senses {
 impl Senses {
     pub(super) fn new(blueprint: &Blueprint, sizes: TaskSizes) -> Result<Self, EnvError> {
         let (config, model) = (blueprint.config(), blueprint.model());
-        let Tables {
+        let SharedTables {
             proprioception,
             vestibular,
             ..
@@ -97,7 +97,7 @@ impl Senses {
             eyes: [0, 1].map(images),
             vision_deferred: false,
             vision_lazy: config.vision_lazy,
-            picture: Picture::Drawn,
+            picture: PictureStatus::Drawn,
             drawn: 0,
             moment: 0,
             known: true,
@@ -268,7 +268,11 @@ impl Senses {
         }
         self.moment += 1;
         let lazy = self.is_lazy();
-        self.picture = if lazy { Picture::Waiting } else { Picture::Drawn };
+        self.picture = if lazy {
+            PictureStatus::Waiting
+        } else {
+            PictureStatus::Drawn
+        };
         if !lazy && !self.vision_deferred {
             self.observe_eyes(state, rng)?;
         }
@@ -332,7 +336,7 @@ impl Senses {
 
     /// Returns the last observation, without images that have not been drawn.
     pub(super) fn observation(&self) -> Observation<'_> {
-        self.observation_with(self.picture == Picture::Drawn)
+        self.observation_with(self.picture == PictureStatus::Drawn)
     }
 
     /// Returns the last observation, with images of any moment or without images.

@@ -12,9 +12,9 @@ use super::{BehaviorInfo, Info, InfoDetails};
 
 impl Serialize for Info {
     /// Serializes the keys of the reference, in its order; the details are a value of their own
-    /// ([`Info::details`], [`Detailed`]).
+    /// ([`Info::details`], [`InfoWithDetails`]).
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        Detailed {
+        InfoWithDetails {
             info: self,
             details: None,
         }
@@ -38,7 +38,7 @@ impl Info {
     /// Returns [`Info::to_json`] with the details: `right_hand_parts` and `left_hand_parts` (names), `gaze_angles`
     /// (rad).
     pub fn to_detailed_json(&self) -> String {
-        crate::json::text(&Detailed::from(self))
+        crate::json::text(&InfoWithDetails::from(self))
     }
 }
 
@@ -75,30 +75,30 @@ impl Serialize for InfoValue<'_> {
 /// An [`Info`] together with details, in one flat map: behavior, details, steps.
 ///
 /// ```
-/// use babybench::env::Detailed;
+/// use babybench::env::InfoWithDetails;
 /// use babybench::Info;
 ///
 /// let info = Info { steps: 3, ..Info::default() };
-/// let detailed = Detailed { info: &info, details: Some(&info.details) };
+/// let detailed = InfoWithDetails { info: &info, details: Some(&info.details) };
 /// assert_eq!(serde_json::to_string(&detailed)?, "{\"steps\":3}");
 /// # Ok::<(), serde_json::Error>(())
 /// ```
 #[derive(Clone, Copy, Debug)]
-pub struct Detailed<'a> {
+pub struct InfoWithDetails<'a> {
     /// The keys of the reference.
     pub info: &'a Info,
     /// The details, if included.
     pub details: Option<&'a InfoDetails>,
 }
 
-impl<'a> From<&'a Info> for Detailed<'a> {
+impl<'a> From<&'a Info> for InfoWithDetails<'a> {
     fn from(info: &'a Info) -> Self {
         let details = Some(&info.details);
         Self { info, details }
     }
 }
 
-impl Serialize for Detailed<'_> {
+impl Serialize for InfoWithDetails<'_> {
     /// Serializes one flat map.
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         serializer.collect_map(self.info.fields(self.details))
@@ -108,7 +108,7 @@ impl Serialize for Detailed<'_> {
 /// A value of a file.
 #[derive(Deserialize)]
 #[serde(untagged)]
-enum Found {
+enum LogValue {
     Flag(bool),
     Count(u64),
     Number(f64),
@@ -118,14 +118,14 @@ enum Found {
 }
 
 /// The values of a file by key.
-struct Keys<E> {
-    values: BTreeMap<String, Found>,
+struct ValuesByKey<E> {
+    values: BTreeMap<String, LogValue>,
     error: PhantomData<E>,
 }
 
-impl<E: serde::de::Error> Keys<E> {
+impl<E: serde::de::Error> ValuesByKey<E> {
     /// Removes and returns a value.
-    fn take<T>(&mut self, key: &str, expected: &str, read: impl FnOnce(Found) -> Option<T>) -> Result<T, E> {
+    fn take<T>(&mut self, key: &str, expected: &str, read: impl FnOnce(LogValue) -> Option<T>) -> Result<T, E> {
         let found = self.values.remove(key);
         let found =
             found.ok_or_else(|| E::custom(format!("missing `{key}`; expected all keys of one behavior, or none")))?;
@@ -133,7 +133,7 @@ impl<E: serde::de::Error> Keys<E> {
     }
 }
 
-impl<E: serde::de::Error> InfoSource for Keys<E> {
+impl<E: serde::de::Error> InfoSource for ValuesByKey<E> {
     type Error = E;
 
     fn has(&self, key: &'static str) -> bool {
@@ -142,36 +142,36 @@ impl<E: serde::de::Error> InfoSource for Keys<E> {
 
     fn count(&mut self, key: &'static str) -> Result<u64, E> {
         self.take(key, "a whole number", |found| match found {
-            Found::Count(count) => Some(count),
+            LogValue::Count(count) => Some(count),
             _ => None,
         })
     }
 
     fn geoms(&mut self, key: &'static str) -> Result<Vec<usize>, E> {
         self.take(key, "a list of geom ids", |found| match found {
-            Found::Geoms(geoms) => Some(geoms),
+            LogValue::Geoms(geoms) => Some(geoms),
             _ => None,
         })
     }
 
     fn name(&mut self, key: &'static str) -> Result<Arc<str>, E> {
         self.take(key, "a text", |found| match found {
-            Found::Name(name) => Some(name.into()),
+            LogValue::Name(name) => Some(name.into()),
             _ => None,
         })
     }
 
     fn flag(&mut self, key: &'static str) -> Result<bool, E> {
         self.take(key, "true or false", |found| match found {
-            Found::Flag(flag) => Some(flag),
+            LogValue::Flag(flag) => Some(flag),
             _ => None,
         })
     }
 
     fn number(&mut self, key: &'static str) -> Result<f64, E> {
         self.take(key, "a number", |found| match found {
-            Found::Count(count) => Some(count as f64),
-            Found::Number(number) => Some(number),
+            LogValue::Count(count) => Some(count as f64),
+            LogValue::Number(number) => Some(number),
             _ => None,
         })
     }
@@ -183,8 +183,8 @@ impl<'de> Deserialize<'de> for Info {
     /// # Errors
     /// A missing `steps`, or some but not all keys of a behavior.
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        let values = BTreeMap::<String, Option<Found>>::deserialize(deserializer)?;
-        let mut keys = Keys {
+        let values = BTreeMap::<String, Option<LogValue>>::deserialize(deserializer)?;
+        let mut keys = ValuesByKey {
             values: values
                 .into_iter()
                 .filter_map(|(key, found)| Some((key, found?)))

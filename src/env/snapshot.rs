@@ -15,7 +15,7 @@ use crate::env::{BehaviorInfo, Env, InfoValue};
 use crate::physics::Row as _;
 use crate::sensors::transform::Sense;
 use crate::spaces::NumpyRng;
-use format::{CUT, HEADER, MAGIC, Reader, VERSION, checksum, damaged};
+use format::{ByteReader, CUT, HEADER, MAGIC, VERSION, checksum, damaged};
 
 /// Number of vectors that a snapshot reserves.
 const VECTORS: usize = 40;
@@ -174,7 +174,7 @@ impl Env {
 
     /// Restores what follows the header of a snapshot, except its keys.
     fn restore_content(&mut self, content: &[u8]) -> Result<(), SnapshotError> {
-        let mut r = Reader(content);
+        let mut r = ByteReader(content);
         let mut whole = [0; WHOLE];
         for v in &mut whole {
             *v = r.u64().ok_or(CUT)?;
@@ -229,8 +229,8 @@ impl Env {
 
     /// Checks everything after the whole numbers except the memory of senses, and reads the information of the behavior. Also returns the
     /// memory.
-    fn parse<'b>(&self, r: &Reader<'b>, counts: [u64; COUNTS]) -> Result<(BehaviorInfo, &'b [u8]), SnapshotError> {
-        let mut r = Reader(r.0);
+    fn parse<'b>(&self, r: &ByteReader<'b>, counts: [u64; COUNTS]) -> Result<(BehaviorInfo, &'b [u8]), SnapshotError> {
+        let mut r = ByteReader(r.0);
         let numbers: usize = self.numbers(&self.task_memory()).iter().map(|n| n.len()).sum();
         let flags: usize = self.flags().iter().map(|f| f.len()).sum();
         let (words, _) = r.take(8 * numbers).ok_or(CUT)?.as_chunks::<8>();
@@ -240,7 +240,7 @@ impl Env {
         if r.take(flags).ok_or(CUT)?.iter().any(|b| *b > 1) {
             return Err(damaged("a flag is neither 0 nor 1"));
         }
-        let mut counted = Counted {
+        let mut counted = SnapshotInfoSource {
             now: &self.info.behavior,
             counts: counts.into_iter(),
             ngeom: self.model().ngeom(),
@@ -252,22 +252,22 @@ impl Env {
 }
 
 /// The information in a snapshot, for the current behavior of an environment.
-struct Counted<'n, 'b> {
+struct SnapshotInfoSource<'n, 'b> {
     now: &'n BehaviorInfo,
     counts: std::array::IntoIter<u64, COUNTS>,
     /// Number of geoms of the scene.
     ngeom: usize,
-    lists: Reader<'b>,
+    lists: ByteReader<'b>,
 }
 
-impl Counted<'_, '_> {
+impl SnapshotInfoSource<'_, '_> {
     /// Returns the environment's current value of a key.
     fn now(&self, key: &str) -> Option<InfoValue<'_>> {
         self.now.fields().find(|field| field.0 == key).map(|field| field.1)
     }
 }
 
-impl InfoSource for Counted<'_, '_> {
+impl InfoSource for SnapshotInfoSource<'_, '_> {
     type Error = SnapshotError;
 
     fn has(&self, key: &'static str) -> bool {

@@ -2,7 +2,7 @@
 
 use std::ops::{Deref, DerefMut};
 
-use crate::env::env_state::Work;
+use crate::env::env_state::ScratchUse;
 use crate::env::{Env, EnvError};
 
 /// Whether steps and resets check [`Task::only_moves`](crate::env::Task::only_moves).
@@ -47,7 +47,7 @@ impl Env {
     }
 
     /// Begins a step or reset in a scratch state, if the environment shares.
-    pub(crate) fn work(&mut self, work: Work) -> Workspace<'_> {
+    pub(crate) fn work(&mut self, work: ScratchUse) -> Workspace<'_> {
         self.physics.begin(work);
         Workspace { env: self }
     }
@@ -140,9 +140,9 @@ mod tests {
 
     /// Pushes the hip after the physics.
     #[derive(Clone, Debug)]
-    struct Push;
+    struct PushTask;
 
-    impl Task for Push {
+    impl Task for PushTask {
         fn name(&self) -> &str {
             "push"
         }
@@ -159,15 +159,15 @@ mod tests {
 
     #[test]
     fn a_task_that_changes_forces_after_the_physics_is_found_out() {
-        let error = error_of(Push);
+        let error = error_of(PushTask);
         assert!(error.contains("\"push\"") && error.contains("qfrc_smooth"), "{error}");
     }
 
     /// Begins an episode at the height where the last one ended.
     #[derive(Clone, Debug)]
-    struct GoOn;
+    struct HeightTask;
 
-    impl Task for GoOn {
+    impl Task for HeightTask {
         fn name(&self) -> &str {
             "go_on"
         }
@@ -186,7 +186,7 @@ mod tests {
 
     #[test]
     fn a_task_that_reads_poses_of_the_last_episode_is_found_out() {
-        let error = error_of(GoOn);
+        let error = error_of(HeightTask);
         assert!(
             error.contains("\"go_on\"") && error.contains("start of an episode"),
             "{error}"

@@ -12,11 +12,11 @@ use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::{Mutex, PoisonError};
 use std::time::Duration;
 
-pub use job::{Job, RunResult};
+pub use job::{BenchmarkJob, RunResult};
 pub use plan::BenchmarkPlan;
 use serde::{Deserialize, Serialize};
-pub use statistics::Interval;
-pub use table::{Metric, Row};
+pub use statistics::ConfidenceInterval;
+pub use table::{BenchmarkRow, Metric};
 use thiserror::Error;
 
 use super::EpisodeError;
@@ -91,7 +91,7 @@ pub struct Benchmark {
     /// The plan.
     pub plan: BenchmarkPlan,
     /// A row for each behavior, age and policy: means over seeds, with intervals.
-    pub rows: Vec<Row>,
+    pub rows: Vec<BenchmarkRow>,
     /// Every run.
     pub runs: Vec<RunResult>,
 }
@@ -171,9 +171,9 @@ fn policy_error(error: PolicyError) -> EpisodeError {
 /// Runs all jobs in threads, and returns the existing results, in the order of the jobs, with the first error. After an error no job is
 /// started.
 fn side_by_side(
-    all: &[Job],
+    all: &[BenchmarkJob],
     threads: usize,
-    run: impl Fn(&Job) -> Result<RunResult, BenchmarkError> + Sync,
+    run: impl Fn(&BenchmarkJob) -> Result<RunResult, BenchmarkError> + Sync,
 ) -> (Vec<RunResult>, Result<(), BenchmarkError>) {
     let (next, failed) = (AtomicUsize::new(0), AtomicBool::new(false));
     let found: Mutex<Vec<Option<RunResult>>> = Mutex::new(vec![None; all.len()]);

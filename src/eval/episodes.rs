@@ -107,9 +107,9 @@ pub trait Observer {
 }
 
 /// An observer that only steps.
-struct Unwatched;
+struct NoObserver;
 
-impl Observer for Unwatched {}
+impl Observer for NoObserver {}
 
 #[cfg(feature = "npz")]
 impl Observer for crate::runs::Recorder {
@@ -144,7 +144,7 @@ pub fn run_episodes(
     policy: &(dyn Fn() -> Result<Box<dyn Policy>, PolicyError> + Sync),
     progress: &(dyn Fn() -> ControlFlow<()> + Sync),
 ) -> Result<Vec<Info>, EpisodeError> {
-    run_episodes_watched(blueprint, plan, policy, &|| Box::new(Unwatched), progress)
+    run_episodes_watched(blueprint, plan, policy, &|| Box::new(NoObserver), progress)
 }
 
 /// Runs evaluation episodes as [`run_episodes`] does, with an observer for each job.
@@ -164,7 +164,7 @@ pub fn run_episodes_watched<'o>(
     }
     let (next, failed) = (AtomicU64::new(0), AtomicBool::new(false));
     let done: Mutex<Vec<(u64, Info)>> = Mutex::default();
-    let schedule = Schedule {
+    let schedule = JobCallbacks {
         next: &|| {
             let episode = next.fetch_add(1, Ordering::Relaxed);
             (episode < plan.episodes && !failed.load(Ordering::Relaxed)).then_some(episode)
@@ -201,7 +201,7 @@ pub fn run_episodes_watched<'o>(
 }
 
 /// The callbacks that jobs share.
-struct Schedule<'a> {
+struct JobCallbacks<'a> {
     /// Returns the next episode, if there is one.
     next: &'a (dyn Fn() -> Option<u64> + Sync),
     /// Reports a step and returns whether to continue.
@@ -216,7 +216,7 @@ fn episodes(
     plan: &Plan,
     policy: &dyn Fn() -> Result<Box<dyn Policy>, PolicyError>,
     observer: &mut dyn Observer,
-    schedule: &Schedule<'_>,
+    schedule: &JobCallbacks<'_>,
 ) -> Result<(), EpisodeError> {
     let env_error = |episode: u64| {
         move |e: EnvError| EpisodeError::Env {

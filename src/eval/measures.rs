@@ -9,7 +9,7 @@ use std::collections::BTreeMap;
 
 use movement::{smoothness, symmetry};
 use serde::{Deserialize, Serialize};
-use touches::{Bouts, Steps};
+use touches::{TouchBouts, TouchSteps};
 
 use crate::env::PerEyeAndHand;
 use crate::formats::npz::{Npz, NpzError};
@@ -86,13 +86,14 @@ impl Measures {
             reason: reason.to_string(),
         };
         let manifest = record.manifest();
-        let steps = Steps::read(&npz, manifest)?.ok_or_else(|| unfit("its contacts do not match its description"))?;
+        let steps =
+            TouchSteps::read(&npz, manifest)?.ok_or_else(|| unfit("its contacts do not match its description"))?;
         let velocity = npz.get_f64("qvel")?;
         let (dt, t) = (manifest.dt, steps.len());
         if !(dt.is_finite() && dt > 0.0) {
             return Err(unfit("the time of a step is not a positive number"));
         }
-        let joints = Joints::of(manifest);
+        let joints = RecordJoints::of(manifest);
         let columns = velocity.shape.get(1).copied().unwrap_or(0);
         if velocity.shape.first() != Some(&t) || velocity.shape.len() != 2 || joints.dof.iter().any(|&d| d >= columns) {
             return Err(unfit("its velocities do not match its description"));
@@ -222,9 +223,9 @@ fn ratio(a: f64, b: f64) -> f64 {
 }
 
 /// Measures one hand. Also returns the number of its touches.
-fn hand_measures(steps: &Steps, hand: usize, dt: f64, seconds: f64) -> (HandMeasures, usize) {
+fn hand_measures(steps: &TouchSteps, hand: usize, dt: f64, seconds: f64) -> (HandMeasures, usize) {
     let measure = |touching: &[bool]| {
-        let bouts = Bouts::of(touching, dt);
+        let bouts = TouchBouts::of(touching, dt);
         let region = RegionMeasures {
             per_minute: ratio(60.0 * bouts.number as f64, seconds),
             duration: ratio(bouts.steps as f64 * dt, bouts.number as f64),
@@ -258,14 +259,14 @@ fn parts(npz: &Npz) -> Result<Option<f64>, NpzError> {
 }
 
 /// MIMo's joints in a record.
-struct Joints {
+struct RecordJoints {
     /// Indices into `qvel`.
     dof: Vec<usize>,
     /// Right and left ones of a pair, as indices into `dof`.
     pairs: Vec<(usize, usize)>,
 }
 
-impl Joints {
+impl RecordJoints {
     fn of(manifest: &Manifest) -> Self {
         let at = |name: &str| manifest.joints.iter().position(|joint| joint.name == name);
         let pair = |(right, joint): (usize, &crate::runs::JointDescription)| {

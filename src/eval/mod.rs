@@ -3,7 +3,7 @@
 //! The API page's Python, line by line:
 //!
 //! ```
-//! use babybench::eval::{Evaluation, Touchables};
+//! use babybench::eval::{Evaluation, TouchableGeoms};
 //! use babybench::{Config, make_env};
 //! # let save_dir = std::env::temp_dir().join("babybench_page_evaluation").display().to_string();
 //! # let text = "behavior: self_touch\nscene: crib\nvision_active: False\ntouch_active: False\nmax_episode_steps: 5";
@@ -22,7 +22,7 @@
 //! // evaluation.eval_logs()
 //! let score = evaluation.eval_logs()?;
 //! println!("{score}"); // Preliminary training score: 0.0
-//! print!("{}", score.to_text(Touchables::new(env.model()).as_ref()));
+//! print!("{}", score.to_text(TouchableGeoms::new(env.model()).as_ref()));
 //!
 //! // obs, _, _, _, info = env.step(action); evaluation.eval_step(info)
 //! env.reset(None)?;
@@ -50,7 +50,9 @@ mod pack;
 mod scores;
 
 #[cfg(feature = "npz")]
-pub use benchmark::{Benchmark, BenchmarkError, BenchmarkPlan, Interval, Job, Metric, Row, RunResult};
+pub use benchmark::{
+    Benchmark, BenchmarkError, BenchmarkJob, BenchmarkPlan, BenchmarkRow, ConfidenceInterval, Metric, RunResult,
+};
 pub use episodes::{EpisodeError, Plan, run_episodes};
 pub use episodes::{Observer, run_episodes_watched};
 pub use evaluation::{Evaluation, EvaluationError, eval_logs};
@@ -59,8 +61,8 @@ pub use film::{Film, FilmError};
 #[cfg(feature = "npz")]
 pub use measures::{HandMeasures, Measures, RegionMeasures};
 #[cfg(feature = "npz")]
-pub use pack::{PackError, PackOptions, Packed, pack};
+pub use pack::{PackError, PackOptions, PackedSubmission, pack};
 pub use scores::{MAX_EPISODES, steps};
-pub use scores::{Score, ScoreError, ScoreParts, Touchables};
+pub use scores::{Score, ScoreError, ScoreParts, TouchableGeoms};
 
 pub use crate::formats::avi::DEFAULT_FPS;

@@ -77,7 +77,7 @@ pub struct PackOptions {
 /// A submission that was packed.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
-pub struct Packed {
+pub struct PackedSubmission {
     /// The score of the training log, by the kit's rule.
     pub score: Score,
     /// The names of the files in the archive.
@@ -90,7 +90,7 @@ pub struct Packed {
 ///
 /// # Errors
 /// Logs that are missing, damaged or of different behaviors, an abstract that is not a PDF document; errors of the file system.
-pub fn pack(save_dir: &Path, options: &PackOptions, archive: &Path) -> Result<Packed, PackError> {
+pub fn pack(save_dir: &Path, options: &PackOptions, archive: &Path) -> Result<PackedSubmission, PackError> {
     let score = eval_logs(save_dir)?;
     let mut notices = Vec::new();
     let mut sources = vec![("logs/training.pkl".to_string(), training_path(save_dir))];
@@ -129,7 +129,7 @@ pub fn pack(save_dir: &Path, options: &PackOptions, archive: &Path) -> Result<Pa
         path: archive.to_path_buf(),
         source,
     })?;
-    Ok(Packed {
+    Ok(PackedSubmission {
         score,
         files: sources.into_iter().map(|(name, _)| name).collect(),
         notices,

@@ -130,7 +130,7 @@ impl Score {
 
     /// Leaves out the geoms that no hand can reach in the scene of `skin`, which must be the log's.
     #[must_use]
-    pub fn within_reach(mut self, skin: &Touchables) -> Self {
+    pub fn within_reach(mut self, skin: &TouchableGeoms) -> Self {
         if let ScoreParts::SelfTouch { touched } = &mut self.parts {
             let hands = [&mut touched.right_hand, &mut touched.left_hand];
             for (hand, geoms) in hands.into_iter().enumerate() {
@@ -172,7 +172,7 @@ impl Score {
     }
 
     /// Returns the score as lines of text; `skin` names the parts.
-    pub fn to_text(&self, skin: Option<&Touchables>) -> String {
+    pub fn to_text(&self, skin: Option<&TouchableGeoms>) -> String {
         let mut out = format!("{self}\n");
         // writing to a string cannot fail
         let _ = write!(out, "  {} episodes, {} steps count", self.episodes, self.steps);
@@ -216,8 +216,8 @@ impl Score {
     }
 
     /// Returns the score as one line of JSON; `skin` adds names of the parts.
-    pub fn to_json(&self, skin: Option<&Touchables>) -> String {
-        json::text(&serial::Described { score: self, skin })
+    pub fn to_json(&self, skin: Option<&TouchableGeoms>) -> String {
+        json::text(&serial::NamedScore { score: self, skin })
     }
 }
 
@@ -249,12 +249,12 @@ impl fmt::Display for Score {
 
 /// MIMo's geoms that hands can touch, with names.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Touchables {
+pub struct TouchableGeoms {
     names: PartNames,
     reachable: [Vec<usize>; 2],
 }
 
-impl Touchables {
+impl TouchableGeoms {
     /// Finds MIMo's geoms in a scene; returns `None` if it has no MIMo. A palm can reach a part if the two can collide.
     pub fn new(model: &Model) -> Option<Self> {
         let (hip, hands) = (

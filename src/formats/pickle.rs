@@ -29,7 +29,7 @@ mod writer;
 use std::sync::Arc;
 
 pub use machine::{from_bytes, from_bytes_with};
-pub(crate) use records::{Node, Root, visit_records};
+pub(crate) use records::{PickleKind, RecordNode, visit_records};
 use thiserror::Error;
 pub use writer::to_bytes;
 pub(crate) use writer::{DictWriter, ListWriter};

@@ -3,18 +3,29 @@
 mod anatomy;
 mod assets;
 mod builder;
+mod custom_scene;
+mod document;
+mod error;
 mod figures;
 mod growth;
 mod locks;
 mod parts;
 mod placement;
-mod room;
 mod scene;
 mod standards;
+mod version;
 
 pub use anatomy::{BodyKind, body_kind};
 pub use assets::embedded;
 pub use builder::SceneBuilder;
+#[cfg(feature = "eval")]
+pub(crate) use custom_scene::open_custom_scene;
+pub use custom_scene::{CustomSceneError, scene_assets};
+pub use custom_scene::{FILES as CUSTOM_SCENE_FILES, UnusedAttribute, unused_attributes};
+pub use document::{DOCUMENT, scene_xml};
+#[cfg(feature = "eval")]
+pub(crate) use document::{document_path, has_own_scene};
+pub use error::SceneError;
 pub use figures::BodyFigures;
 #[cfg(feature = "report")]
 pub(crate) use figures::upright_extent;
@@ -25,13 +36,6 @@ pub use locks::{held_by, lock, lock_of, unlock};
 pub(crate) use parts::{JOINT_PREFIX, ROOT};
 pub use parts::{MimoBodies, MimoJoints, joint_part};
 pub use placement::held_posture;
-pub(crate) use room::OTHER_PREFIX;
-#[cfg(feature = "eval")]
-pub(crate) use room::open_room;
-pub use room::{PARTS as ROOM_PARTS, Unused, unused_attributes};
-pub use room::{RoomError, scene_assets};
-pub use scene::{DOCUMENT, build_scene};
-pub use scene::{EYES, SceneError, Version, build_model, scene_xml};
-#[cfg(feature = "eval")]
-pub(crate) use scene::{document_path, has_own_scene};
+pub use scene::{build_model, build_scene};
 pub use standards::{GrowthStandard, Lms};
+pub use version::{EYES, Version};

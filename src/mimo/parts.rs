@@ -2,6 +2,7 @@
 
 use crate::config::Part;
 use crate::mimo::body_kind;
+use crate::mimo::version::SECOND_PREFIX;
 use crate::model::{JointType, Model, ObjType};
 
 /// Prefix of the names of MIMo's own joints.
@@ -29,6 +30,8 @@ pub(crate) const ROOT: &str = "hip";
 pub struct MimoBodies<'m> {
     model: &'m Model,
     root: Option<usize>,
+    /// The prefix of the infant's names.
+    prefix: &'static str,
 }
 
 impl<'m> MimoBodies<'m> {
@@ -37,6 +40,37 @@ impl<'m> MimoBodies<'m> {
         Self {
             root: model.body(ROOT),
             model,
+            prefix: "",
+        }
+    }
+
+    /// Finds the second infant in `model`; `None` if there is none.
+    pub fn second(model: &'m Model) -> Option<Self> {
+        let root = model.body(&format!("{SECOND_PREFIX}{ROOT}"))?;
+        Some(Self {
+            root: Some(root),
+            model,
+            prefix: SECOND_PREFIX,
+        })
+    }
+
+    /// Returns the infant's own joints.
+    pub fn joints(&self) -> MimoJoints {
+        let model = self.model;
+        let named = |name: &str| {
+            name.strip_prefix(self.prefix)
+                .is_some_and(|name| name.starts_with(JOINT_PREFIX))
+        };
+        let own = |&j: &usize| {
+            named(&model.jnt_name[j])
+                && matches!(model.jnt_type[j], JointType::Slide | JointType::Hinge)
+                && self.contains(model.jnt_bodyid[j])
+        };
+        let joint: Vec<usize> = (0..model.njnt()).filter(own).collect();
+        MimoJoints {
+            qpos: joint.iter().map(|&j| model.jnt_qposadr[j]).collect(),
+            dof: joint.iter().map(|&j| model.jnt_dofadr[j]).collect(),
+            joint,
         }
     }
 
@@ -79,18 +113,7 @@ pub struct MimoJoints {
 impl MimoJoints {
     /// Finds MIMo's joints in `model`.
     pub fn new(model: &Model) -> Self {
-        let bodies = MimoBodies::of(model);
-        let own = |&j: &usize| {
-            model.jnt_name[j].starts_with(JOINT_PREFIX)
-                && matches!(model.jnt_type[j], JointType::Slide | JointType::Hinge)
-                && bodies.contains(model.jnt_bodyid[j])
-        };
-        let joint: Vec<usize> = (0..model.njnt()).filter(own).collect();
-        Self {
-            qpos: joint.iter().map(|&j| model.jnt_qposadr[j]).collect(),
-            dof: joint.iter().map(|&j| model.jnt_dofadr[j]).collect(),
-            joint,
-        }
+        MimoBodies::of(model).joints()
     }
 
     /// Returns the number of joints: 47 for version 1, 91 for version 2.

@@ -4,13 +4,13 @@ use std::sync::Arc;
 
 use crate::math::Vec3;
 use crate::mimo::ROOT;
-use crate::mimo::scene::MIMO;
+use crate::mimo::version::MIMO;
 use crate::model::{EqualityKind, GeomType, Model};
 use crate::physics::{Engine, EngineError, SoftEngine, SoftOptions, State};
 
 /// Two interpenetrating geoms of MIMo.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Overlap {
+pub(super) struct GeomOverlap {
     pub geoms: [usize; 2],
     /// Depth, m.
     pub depth: f64,
@@ -55,11 +55,11 @@ fn own(model: &Model) -> impl Fn(&usize) -> bool {
 }
 
 /// Lists the geoms of MIMo that are in each other at the held posture.
-pub(super) fn overlaps(model: &Arc<Model>) -> Result<Vec<Overlap>, EngineError> {
+pub(super) fn overlaps(model: &Arc<Model>) -> Result<Vec<GeomOverlap>, EngineError> {
     let (state, own) = (at_rest(model)?, own(model));
     let inside = state.contact.iter().filter(|c| c.dist < 0.0 && c.geom.iter().all(&own));
     Ok(inside
-        .map(|c| Overlap {
+        .map(|c| GeomOverlap {
             geoms: c.geom,
             depth: -c.dist,
         })

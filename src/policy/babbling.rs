@@ -10,11 +10,11 @@ mod arms;
 mod memory;
 
 use arms::Arms;
-use memory::{Choice, Memory, Movement, Outcome};
+use memory::{BestMovements, Movement, MovementMemory, MovementOutcome};
 
 use super::{Policy, PolicyError};
 use crate::env::Env;
-use crate::sensors::Component;
+use crate::sensors::ProprioceptionComponent;
 use crate::spaces::NumpyRng;
 
 /// Durations of a new movement, s, one of which is drawn. A reach of MIMo's takes 0.1 to 0.4 s at his strength.
@@ -43,12 +43,12 @@ const FORGETTING: f64 = 0.05;
 /// [`Policy::settle`] it only repeats.
 ///
 /// ```
-/// use babybench::policy::{Babbling, Policy};
+/// use babybench::policy::{BabblingPolicy, Policy};
 /// use babybench::{Config, Env};
 ///
 /// let config = Config { behavior: babybench::config::Behavior::SelfTouch, vision_active: false, ..Config::default() };
 /// let mut env = Env::new(config)?;
-/// let (mut policy, mut action) = (Babbling::new(), Vec::new());
+/// let (mut policy, mut action) = (BabblingPolicy::new(), Vec::new());
 /// env.reset(Some(0))?;
 /// policy.begin(&mut env, 0)?;
 /// for _ in 0..200 {
@@ -58,12 +58,12 @@ const FORGETTING: f64 = 0.05;
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Clone, Debug, Default)]
-pub struct Babbling {
-    learner: Option<Learner>,
+pub struct BabblingPolicy {
+    learner: Option<BabblingLearner>,
     settled: bool,
 }
 
-impl Babbling {
+impl BabblingPolicy {
     /// Makes a policy that knows nothing yet.
     pub fn new() -> Self {
         Self::default()
@@ -77,21 +77,21 @@ impl Babbling {
 
 /// The policy's knowledge of one body, and its present movement.
 #[derive(Clone, Debug)]
-struct Learner {
+struct BabblingLearner {
     arms: Arms,
-    memory: Memory,
+    memory: MovementMemory,
     rng: NumpyRng,
     /// For each pair of a palm and a geom how often an episode has had it lately.
     shares: Vec<f64>,
     /// The pairs that this episode has had.
     touched: Vec<bool>,
-    running: Option<Running>,
+    running: Option<CurrentMovement>,
     dt: f64,
 }
 
 /// A movement on its way.
 #[derive(Clone, Debug)]
-struct Running {
+struct CurrentMovement {
     movement: Movement,
     /// The movement of the memory that is repeated; `None` for a new one.
     again: Option<usize>,
@@ -100,12 +100,12 @@ struct Running {
     left: u32,
 }
 
-impl Policy for Babbling {
+impl Policy for BabblingPolicy {
     fn begin(&mut self, env: &mut Env, _episode: u64) -> Result<(), PolicyError> {
         match &mut self.learner {
             Some(learner) if learner.arms.fits(env) => learner.end_episode(),
             Some(_) => return Err(PolicyError::Other("this policy has learned with another body".into())),
-            learner => *learner = Some(Learner::new(env)?),
+            learner => *learner = Some(BabblingLearner::new(env)?),
         }
         Ok(())
     }
@@ -135,12 +135,12 @@ impl Policy for Babbling {
     }
 }
 
-impl Learner {
+impl BabblingLearner {
     fn new(env: &mut Env) -> Result<Self, PolicyError> {
         let arms = Arms::new(env)?;
         let pairs = arms.pairs();
         Ok(Self {
-            memory: Memory::default(),
+            memory: MovementMemory::default(),
             rng: NumpyRng::seed(env.draw_seed()),
             shares: vec![0.0; pairs],
             touched: vec![false; pairs],
@@ -182,7 +182,7 @@ impl Learner {
             return;
         }
         let nothing = running.felt.is_empty();
-        let outcome = Outcome {
+        let outcome = MovementOutcome {
             posture: running.posture,
             felt: running.felt,
         };
@@ -201,7 +201,7 @@ impl Learner {
         let mut choice = if chance < AGAIN + VARIED + COMBINED {
             self.best(&posture, settled)
         } else {
-            Choice::default()
+            BestMovements::default()
         };
         if settled && choice.both.is_none() {
             // everything known was touched: start again
@@ -219,7 +219,7 @@ impl Learner {
             Some(best) if chance < AGAIN + VARIED => self.varied(best),
             Some(best) => self.combined(&choice, best),
         };
-        self.running = Some(Running {
+        self.running = Some(CurrentMovement {
             left: movement.steps,
             movement,
             again,
@@ -228,7 +228,7 @@ impl Learner {
         });
     }
 
-    fn best(&self, posture: &[f32], settled: bool) -> Choice {
+    fn best(&self, posture: &[f32], settled: bool) -> BestMovements {
         let worth = self.shares.iter().zip(&self.touched).map(|(share, touched)| match () {
             () if *touched => 0.0,
             () if settled => 1.0,
@@ -268,7 +268,7 @@ impl Learner {
     }
 
     /// Takes each arm's part from what promises most for its palm, the rest from the better of both.
-    fn combined(&self, choice: &Choice, best: usize) -> Movement {
+    fn combined(&self, choice: &BestMovements, best: usize) -> Movement {
         let mut movement = self.memory.movement(choice.lead().unwrap_or(best)).clone();
         for (hand, index) in choice.hands.iter().enumerate() {
             let Some(index) = *index else { continue };
@@ -287,7 +287,7 @@ impl Learner {
 
 /// Returns the joint angles as proprioception has them, rad, or m.
 fn posture(env: &Env) -> Vec<f32> {
-    let angles = env.senses().proprioception().range(Component::Angles);
+    let angles = env.senses().proprioception().range(ProprioceptionComponent::Angles);
     let all = env.observation().proprioception;
     let angles = angles.and_then(|range| all.get(range)).unwrap_or_default();
     angles.iter().map(|&angle| angle as f32).collect()
@@ -304,7 +304,7 @@ mod tests {
         Env::new(Config { seed, ..config }).unwrap()
     }
 
-    fn run(env: &mut Env, policy: &mut Babbling, steps: usize, mut each: impl FnMut(&[f32])) {
+    fn run(env: &mut Env, policy: &mut BabblingPolicy, steps: usize, mut each: impl FnMut(&[f32])) {
         let mut action = Vec::new();
         env.reset(None).unwrap();
         policy.begin(env, 0).unwrap();
@@ -317,7 +317,7 @@ mod tests {
 
     #[test]
     fn it_remembers_what_its_palms_felt_and_settles_to_repeat_it() {
-        let (mut env, mut policy) = (crib(0), Babbling::new());
+        let (mut env, mut policy) = (crib(0), BabblingPolicy::new());
         for _ in 0..5 {
             run(&mut env, &mut policy, 1000, |action| {
                 assert!(action.iter().all(|v| v.abs() <= 1.0))
@@ -338,7 +338,7 @@ mod tests {
     #[test]
     fn the_same_seed_gives_the_same_actions() {
         let actions = || {
-            let (mut env, mut policy, mut all) = (crib(3), Babbling::new(), Vec::new());
+            let (mut env, mut policy, mut all) = (crib(3), BabblingPolicy::new(), Vec::new());
             for _ in 0..2 {
                 run(&mut env, &mut policy, 400, |action| {
                     all.extend(action.iter().map(|v| v.to_bits()))
@@ -357,7 +357,9 @@ mod tests {
             behavior: Behavior::SelfTouch,
             ..Config::default()
         };
-        let error = Babbling::new().begin(&mut Env::new(config).unwrap(), 0).unwrap_err();
+        let error = BabblingPolicy::new()
+            .begin(&mut Env::new(config).unwrap(), 0)
+            .unwrap_err();
         assert!(error.to_string().contains("touch_active: true"), "{error}");
     }
 }

@@ -5,8 +5,8 @@ use std::process::{Child, ChildStdin, Command, Stdio};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, SyncSender, TryRecvError, TrySendError, sync_channel};
 use std::time::{Duration, Instant};
 
-use super::protocol::{Line, parse};
-use super::{Moment, Policy, PolicyError};
+use super::protocol::{ObservationMessage, parse};
+use super::{EvaluationStep, Policy, PolicyError};
 use crate::env::Env;
 use crate::json;
 use crate::limits::Limits;
@@ -51,14 +51,14 @@ pub struct CommandPolicy {
     /// Lines for the thread that writes: a program that reads nothing would block it.
     observations: Option<SyncSender<Vec<u8>>>,
     /// Answers from the thread that reads, which waits until one is taken.
-    answers: Receiver<std::io::Result<Answer>>,
+    answers: Receiver<std::io::Result<CommandReply>>,
     limit: Duration,
-    now: Moment,
+    now: EvaluationStep,
 }
 
 /// A line that a command wrote.
 #[derive(Debug)]
-struct Answer {
+struct CommandReply {
     line: Vec<u8>,
     /// Description of the fault, independent of its content.
     fault: Option<String>,
@@ -144,7 +144,7 @@ impl CommandPolicy {
             observations: Some(observations),
             answers,
             limit: DEFAULT_LIMIT,
-            now: Moment { episode: 0, step: 0 },
+            now: EvaluationStep { episode: 0, step: 0 },
         })
     }
 
@@ -156,7 +156,7 @@ impl CommandPolicy {
     }
 
     /// Sends a line to the command and returns its answer.
-    fn ask(&mut self, line: Vec<u8>) -> Result<Answer, PolicyError> {
+    fn ask(&mut self, line: Vec<u8>) -> Result<CommandReply, PolicyError> {
         // an answer that is there before the question belongs to no observation: taken for the answer, it would shift
         // all later ones
         match self.answers.try_recv() {
@@ -164,7 +164,7 @@ impl CommandPolicy {
             Ok(Err(e)) => return Err(self.ended(e.to_string())),
             Ok(Ok(early)) => {
                 let fault = Some(UNASKED.to_string());
-                return Ok(Answer { fault, ..early });
+                return Ok(CommandReply { fault, ..early });
             }
         }
         match self
@@ -224,7 +224,7 @@ fn write_lines(mut input: ChildStdin, lines: &Receiver<Vec<u8>>) {
 }
 
 /// Passes lines on, each as soon as the one before is taken, until the output ends.
-fn read_lines(output: impl Read, longest: usize, lines: &SyncSender<std::io::Result<Answer>>) {
+fn read_lines(output: impl Read, longest: usize, lines: &SyncSender<std::io::Result<CommandReply>>) {
     let mut output = BufReader::new(output);
     loop {
         let mut line = Vec::new();
@@ -237,7 +237,7 @@ fn read_lines(output: impl Read, longest: usize, lines: &SyncSender<std::io::Res
         } else {
             (!output.buffer().is_empty()).then(|| UNASKED.to_string())
         };
-        if matches!(read, Ok(0)) || lines.send(read.map(|_| Answer { line, fault })).is_err() || last {
+        if matches!(read, Ok(0)) || lines.send(read.map(|_| CommandReply { line, fault })).is_err() || last {
             return;
         }
     }
@@ -249,7 +249,7 @@ pub fn answers(output: &[u8], expected: usize, longest: usize) -> Vec<Result<Vec
     let (sender, lines) = sync_channel(output.len() + 1);
     read_lines(output, longest, &sender);
     drop(sender);
-    let read = |answer: Answer| {
+    let read = |answer: CommandReply| {
         let mut action = Vec::new();
         let read = read_answer(&answer, expected, &mut action);
         read.map(|()| action)
@@ -258,7 +258,7 @@ pub fn answers(output: &[u8], expected: usize, longest: usize) -> Vec<Result<Vec
 }
 
 /// Reads an action from a line; the error describes the fault.
-fn read_answer(answer: &Answer, expected: usize, action: &mut Vec<f32>) -> Result<(), String> {
+fn read_answer(answer: &CommandReply, expected: usize, action: &mut Vec<f32>) -> Result<(), String> {
     let text = String::from_utf8_lossy(&answer.line);
     let fault = answer.fault.clone();
     let read = fault.map_or_else(|| parse(text.trim(), expected, action), Err);
@@ -285,13 +285,13 @@ fn start(text: &str) -> String {
 
 impl Policy for CommandPolicy {
     fn begin(&mut self, _: &mut Env, episode: u64) -> Result<(), PolicyError> {
-        self.now = Moment { episode, step: 0 };
+        self.now = EvaluationStep { episode, step: 0 };
         Ok(())
     }
 
     fn act(&mut self, env: &mut Env, action: &mut Vec<f32>) -> Result<(), PolicyError> {
         env.look().map_err(|e| PolicyError::Other(Box::new(e)))?;
-        let mut line = json::text(&Line::new(env, self.now)).into_bytes();
+        let mut line = json::text(&ObservationMessage::new(env, self.now)).into_bytes();
         line.push(b'\n');
         let answer = self.ask(line)?;
         let expected = env.action_space().len();
@@ -338,7 +338,7 @@ mod tests {
     use super::*;
 
     /// Returns the answers of a program that writes this in one piece.
-    fn read(text: &[u8], longest: usize) -> Vec<Answer> {
+    fn read(text: &[u8], longest: usize) -> Vec<CommandReply> {
         let (sender, answers) = sync_channel(100);
         read_lines(text, longest, &sender);
         drop(sender);
@@ -349,7 +349,7 @@ mod tests {
     fn more_than_one_line_at_a_time_is_a_fault() {
         let alone = read(b"[1]\n", 10);
         assert!(
-            matches!(&alone[..], [Answer { line, fault: None }] if line == b"[1]\n"),
+            matches!(&alone[..], [CommandReply { line, fault: None }] if line == b"[1]\n"),
             "{alone:?}"
         );
         let twice = read(b"[1]\n[1]\n", 10);

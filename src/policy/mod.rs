@@ -10,7 +10,7 @@ mod watching;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-pub use babbling::Babbling;
+pub use babbling::BabblingPolicy;
 pub use command::CommandPolicy;
 pub use command::DEFAULT_LIMIT;
 #[cfg(fuzzing)]
@@ -20,7 +20,7 @@ pub use onnx::OnnxError;
 #[cfg(feature = "onnx")]
 pub use onnx::OnnxPolicy;
 use thiserror::Error;
-pub use watching::Watching;
+pub use watching::WatchingPolicy;
 
 use crate::env::Env;
 use crate::spaces::{ActionNoise, Noise};
@@ -56,7 +56,7 @@ pub enum PolicyError {
         /// Its exit status.
         status: String,
         /// The episode and the step.
-        when: Moment,
+        when: EvaluationStep,
     },
     /// The command does not answer.
     #[error(
@@ -68,7 +68,7 @@ pub enum PolicyError {
         /// The time limit, s.
         seconds: f64,
         /// The episode and the step.
-        when: Moment,
+        when: EvaluationStep,
     },
     /// The command's answer is not an action.
     #[error(
@@ -85,7 +85,7 @@ pub enum PolicyError {
         /// Length of an action.
         expected: usize,
         /// The episode and the step.
-        when: Moment,
+        when: EvaluationStep,
     },
     /// The model does not fit.
     #[cfg(feature = "onnx")]
@@ -112,14 +112,14 @@ pub enum PolicyError {
 
 /// A moment of an evaluation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Moment {
+pub struct EvaluationStep {
     /// Number of the episode in the evaluation, from 0.
     pub episode: u64,
     /// Steps before this one in the episode.
     pub step: u64,
 }
 
-impl std::fmt::Display for Moment {
+impl std::fmt::Display for EvaluationStep {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         write!(f, "at step {} of episode {}", self.step, self.episode)
     }
@@ -267,8 +267,8 @@ impl PolicySource {
             Self::Random => Box::new(RandomPolicy),
             Self::Zero => Box::new(ZeroPolicy),
             Self::Noise(noise) => Box::new(NoisePolicy::new(*noise)),
-            Self::Babbling => Box::new(Babbling::new()),
-            Self::Watching => Box::new(Watching::new()),
+            Self::Babbling => Box::new(BabblingPolicy::new()),
+            Self::Watching => Box::new(WatchingPolicy::new()),
             #[cfg(feature = "onnx")]
             Self::Onnx(path) => Box::new(OnnxPolicy::open(path)?),
             #[cfg(not(feature = "onnx"))]

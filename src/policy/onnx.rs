@@ -112,7 +112,7 @@ pub enum OnnxError {
 pub struct OnnxPolicy {
     path: PathBuf,
     model: Model,
-    inputs: Vec<Input>,
+    inputs: Vec<ModelInput>,
     output: NodeId,
     output_name: String,
     options: RunOptions,
@@ -121,7 +121,7 @@ pub struct OnnxPolicy {
 }
 
 /// An input of the model.
-struct Input {
+struct ModelInput {
     node: NodeId,
     /// Keys of senses, one after the other.
     senses: Vec<&'static str>,
@@ -224,7 +224,7 @@ impl OnnxPolicy {
         senses.any(|key| ObservationEntry::of_key(key).is_some_and(|entry| entry.image.is_some()))
     }
 
-    fn match_inputs(&self, spaces: &[ObservationSpace]) -> Result<Vec<Input>, OnnxError> {
+    fn match_inputs(&self, spaces: &[ObservationSpace]) -> Result<Vec<ModelInput>, OnnxError> {
         let ids = self.model.input_ids();
         let names: Vec<String> = ids.iter().map(|&id| name(&self.model, id)).collect();
         let find = |name: &str| spaces.iter().find(|s| s.key == name);
@@ -247,7 +247,7 @@ impl OnnxPolicy {
     }
 
     /// Connects an input with one sense.
-    fn sense(&self, node: NodeId, name: &str, space: &ObservationSpace) -> Result<Input, OnnxError> {
+    fn sense(&self, node: NodeId, name: &str, space: &ObservationSpace) -> Result<ModelInput, OnnxError> {
         let image = space.dtype == Dtype::U8;
         let bytes = self.takes_bytes(node, name, image)?;
         let (shape, channels_first) = match space.shape[..] {
@@ -259,7 +259,7 @@ impl OnnxPolicy {
             _ => (self.shape(node, name, std::slice::from_ref(&space.shape))?.0, false),
         };
         let senses = vec![space.key];
-        Ok(Input {
+        Ok(ModelInput {
             node,
             senses,
             shape,
@@ -269,7 +269,7 @@ impl OnnxPolicy {
     }
 
     /// Connects an input with all senses.
-    fn flat(&self, node: NodeId, name: &str, spaces: &[ObservationSpace]) -> Result<Input, OnnxError> {
+    fn flat(&self, node: NodeId, name: &str, spaces: &[ObservationSpace]) -> Result<ModelInput, OnnxError> {
         let bytes = self.takes_bytes(node, name, false)?;
         let mut senses: Vec<_> = spaces.iter().map(|s| s.key).collect();
         senses.sort_unstable();
@@ -282,7 +282,7 @@ impl OnnxPolicy {
             }
             other => other,
         })?;
-        Ok(Input {
+        Ok(ModelInput {
             node,
             senses,
             shape,
@@ -377,7 +377,7 @@ impl OnnxPolicy {
     }
 }
 
-impl Input {
+impl ModelInput {
     /// Returns an image in bytes of an eye.
     fn pixels(&self, o: &Observation) -> Vec<u8> {
         match self.senses.first().and_then(|key| o.get(key)) {

@@ -9,14 +9,14 @@ use serde::de::{DeserializeSeed, SeqAccess, Visitor};
 use serde::ser::SerializeMap;
 use serde::{Serialize, Serializer};
 
-use super::Moment;
+use super::EvaluationStep;
 use crate::config::VisionOutput;
 use crate::env::{Env, Observation};
 use crate::spaces::{BoxSpace, ObservationSpace, Values};
 
 /// The message to a policy before each action. Senses that are not active are left out.
-pub(super) struct Line<'a> {
-    moment: Moment,
+pub(super) struct ObservationMessage<'a> {
+    moment: EvaluationStep,
     /// At the start of an episode.
     action_space: Option<&'a BoxSpace>,
     observation: Observation<'a>,
@@ -24,9 +24,9 @@ pub(super) struct Line<'a> {
     spaces: Vec<ObservationSpace>,
 }
 
-impl<'a> Line<'a> {
+impl<'a> ObservationMessage<'a> {
     /// Takes the present observation of an environment, and the action space at the start of an episode.
-    pub fn new(env: &'a Env, moment: Moment) -> Self {
+    pub fn new(env: &'a Env, moment: EvaluationStep) -> Self {
         Self {
             action_space: (moment.step == 0).then(|| env.action_space()),
             observation: env.observation(),
@@ -36,19 +36,19 @@ impl<'a> Line<'a> {
     }
 }
 
-impl Serialize for Line<'_> {
+impl Serialize for ObservationMessage<'_> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let mut map = serializer.serialize_map(None)?;
         map.serialize_entry("episode", &self.moment.episode)?;
         map.serialize_entry("step", &self.moment.step)?;
         if let Some(space) = self.action_space {
             let (low, high) = (space.low(), space.high());
-            map.serialize_entry("action_space", &Bounds { low, high })?;
+            map.serialize_entry("action_space", &ActionBounds { low, high })?;
         }
         for ((entry, values), space) in self.observation.entries().zip(&self.spaces) {
             match entry.image {
-                Some(output) => map.serialize_entry(entry.key, &Image::new(output, &space.shape, values))?,
-                None => map.serialize_entry(entry.key, &List(values))?,
+                Some(output) => map.serialize_entry(entry.key, &ImageMessage::new(output, &space.shape, values))?,
+                None => map.serialize_entry(entry.key, &NumberList(values))?,
             }
         }
         map.end()
@@ -57,15 +57,15 @@ impl Serialize for Line<'_> {
 
 /// The limits of each number of an action.
 #[derive(Serialize)]
-struct Bounds<'a> {
+struct ActionBounds<'a> {
     low: &'a [f32],
     high: &'a [f32],
 }
 
 /// Numbers as a list.
-struct List<'a>(Values<'a>);
+struct NumberList<'a>(Values<'a>);
 
-impl Serialize for List<'_> {
+impl Serialize for NumberList<'_> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         match self.0 {
             Values::F64(values) => values.serialize(serializer),
@@ -78,7 +78,7 @@ impl Serialize for List<'_> {
 
 /// An image: its shape, NumPy's name of its type unless it is in colours, and its data, little-endian, in base64.
 #[derive(Serialize)]
-struct Image<'a> {
+struct ImageMessage<'a> {
     shape: &'a [usize],
     #[serde(skip_serializing_if = "Option::is_none")]
     dtype: Option<&'static str>,
@@ -86,7 +86,7 @@ struct Image<'a> {
     data: Cow<'a, [u8]>,
 }
 
-impl<'a> Image<'a> {
+impl<'a> ImageMessage<'a> {
     fn new(output: VisionOutput, shape: &'a [usize], values: Values<'a>) -> Self {
         Self {
             shape,
@@ -111,7 +111,7 @@ pub(super) fn parse(answer: &str, expected: usize, action: &mut Vec<f32>) -> Res
         return Err("it is not a list in brackets".to_string());
     }
     let mut deserializer = serde_json::Deserializer::from_str(answer);
-    let list = Numbers {
+    let list = ActionSeed {
         action: &mut *action,
         expected,
     };
@@ -128,12 +128,12 @@ pub(super) fn parse(answer: &str, expected: usize, action: &mut Vec<f32>) -> Res
 }
 
 /// Reads numbers into a list that grows to `expected`, and counts the rest.
-struct Numbers<'a> {
+struct ActionSeed<'a> {
     action: &'a mut Vec<f32>,
     expected: usize,
 }
 
-impl<'de> DeserializeSeed<'de> for Numbers<'_> {
+impl<'de> DeserializeSeed<'de> for ActionSeed<'_> {
     type Value = usize;
 
     fn deserialize<D: serde::Deserializer<'de>>(self, deserializer: D) -> Result<usize, D::Error> {
@@ -141,7 +141,7 @@ impl<'de> DeserializeSeed<'de> for Numbers<'_> {
     }
 }
 
-impl<'de> Visitor<'de> for Numbers<'_> {
+impl<'de> Visitor<'de> for ActionSeed<'_> {
     type Value = usize;
 
     fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -221,8 +221,8 @@ mod tests {
             low: f64::NEG_INFINITY,
             high: f64::INFINITY,
         };
-        let line = Line {
-            moment: Moment { episode: 0, step: 0 },
+        let line = ObservationMessage {
+            moment: EvaluationStep { episode: 0, step: 0 },
             action_space: Some(&BoxSpace::new(vec![f32::NEG_INFINITY], vec![1.5])),
             observation: Observation {
                 proprioception: &[f64::NAN, 1e-300, -0.0],

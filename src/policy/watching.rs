@@ -10,9 +10,9 @@ mod archive;
 mod limbs;
 mod sight;
 
-use archive::{Archive, Trial};
-use limbs::{HANDS, Limbs};
-use sight::Sight;
+use archive::{Trial, TrialArchive};
+use limbs::{DrivenJoints, HANDS};
+use sight::ImageChanges;
 
 use super::{Policy, PolicyError};
 use crate::env::Env;
@@ -28,11 +28,11 @@ const RANDOM: f64 = 0.1;
 /// A policy that learns to look at its hands while it acts, from its eyes and its joints alone; `watching` on the command line.
 ///
 /// ```
-/// use babybench::policy::{Policy, Watching};
+/// use babybench::policy::{Policy, WatchingPolicy};
 /// use babybench::{Config, Env};
 ///
 /// let mut env = Env::new(Config { behavior: babybench::config::Behavior::HandRegard, ..Config::default() })?;
-/// let (mut policy, mut action) = (Watching::new(), Vec::new());
+/// let (mut policy, mut action) = (WatchingPolicy::new(), Vec::new());
 /// env.reset(Some(0))?;
 /// policy.begin(&mut env, 0)?;
 /// for _ in 0..10 {
@@ -42,12 +42,12 @@ const RANDOM: f64 = 0.1;
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Clone, Debug, Default)]
-pub struct Watching {
-    learner: Option<Learner>,
+pub struct WatchingPolicy {
+    learner: Option<WatchingLearner>,
     settled: bool,
 }
 
-impl Watching {
+impl WatchingPolicy {
     /// Makes a policy that knows nothing yet.
     pub fn new() -> Self {
         Self::default()
@@ -62,10 +62,10 @@ impl Watching {
 
 /// The policy's knowledge of one body, and its current activity.
 #[derive(Clone, Debug)]
-struct Learner {
-    limbs: Limbs,
-    sight: Sight,
-    archive: Archive,
+struct WatchingLearner {
+    limbs: DrivenJoints,
+    sight: ImageChanges,
+    archive: TrialArchive,
     rng: NumpyRng,
     /// The posture that is tried: an angle for each number of an action, rad.
     posture: Vec<f64>,
@@ -76,13 +76,13 @@ struct Learner {
     dt: f64,
 }
 
-impl Policy for Watching {
+impl Policy for WatchingPolicy {
     fn begin(&mut self, env: &mut Env, _episode: u64) -> Result<(), PolicyError> {
         match &mut self.learner {
             Some(learner) if learner.limbs.fits(env) => learner.start(self.settled),
             Some(_) => return Err(PolicyError::Other("this policy has learned with another body".into())),
             learner => {
-                let mut new = Learner::new(env)?;
+                let mut new = WatchingLearner::new(env)?;
                 new.start(self.settled);
                 *learner = Some(new);
             }
@@ -105,13 +105,13 @@ impl Policy for Watching {
     }
 }
 
-impl Learner {
+impl WatchingLearner {
     fn new(env: &mut Env) -> Result<Self, PolicyError> {
-        let (limbs, dt) = (Limbs::new(env)?, env.blueprint().dt());
+        let (limbs, dt) = (DrivenJoints::new(env)?, env.blueprint().dt());
         let steps = |seconds: f64| ((seconds / dt).round() as u64).max(2);
         Ok(Self {
-            sight: Sight::new(env)?,
-            archive: Archive::default(),
+            sight: ImageChanges::new(env)?,
+            archive: TrialArchive::default(),
             rng: NumpyRng::seed(env.draw_seed()),
             posture: Vec::new(),
             step: 0,
@@ -177,7 +177,7 @@ mod tests {
         .unwrap()
     }
 
-    fn run(env: &mut Env, policy: &mut Watching, steps: usize) -> Vec<f32> {
+    fn run(env: &mut Env, policy: &mut WatchingPolicy, steps: usize) -> Vec<f32> {
         let (mut action, mut all) = (Vec::new(), Vec::new());
         env.reset(None).unwrap();
         policy.begin(env, 0).unwrap();
@@ -191,7 +191,7 @@ mod tests {
 
     #[test]
     fn the_same_seed_gives_the_same_actions_within_bounds() {
-        let actions = || run(&mut cubes(), &mut Watching::new(), 450);
+        let actions = || run(&mut cubes(), &mut WatchingPolicy::new(), 450);
         let all = actions();
         assert!(all.iter().all(|v| v.abs() <= 1.0) && all.iter().any(|v| *v != 0.0));
         assert_eq!(all, actions());
@@ -199,7 +199,7 @@ mod tests {
 
     #[test]
     fn what_it_has_learned_it_takes_and_holds() {
-        let (mut env, mut policy) = (cubes(), Watching::new());
+        let (mut env, mut policy) = (cubes(), WatchingPolicy::new());
         run(&mut env, &mut policy, 10);
         let learner = policy.learner.as_mut().unwrap();
         let wanted: Vec<f64> = learner.limbs.random(&mut learner.rng);
@@ -217,7 +217,9 @@ mod tests {
             vision_active: false,
             ..Config::default()
         };
-        let error = Watching::new().begin(&mut Env::new(config).unwrap(), 0).unwrap_err();
+        let error = WatchingPolicy::new()
+            .begin(&mut Env::new(config).unwrap(), 0)
+            .unwrap_err();
         assert!(error.to_string().contains("vision_active: true"), "{error}");
     }
 }

@@ -7,7 +7,7 @@ use crate::assets::AssetSource;
 use crate::formats::png::{ColorType, png};
 use crate::mimo::BodyFigures;
 use crate::model::Model;
-use crate::report::doll::{Doll, Side};
+use crate::report::doll::{Doll, DollSide};
 
 /// Pixels for each metre.
 const SCALE: f64 = 640.0;
@@ -33,7 +33,7 @@ pub fn draw_ages(infants: &[(f64, &Model)], assets: &dyn AssetSource) -> Option<
     let mut dolls = Vec::new();
     for (_, model) in infants {
         let span = ground as f64 / SCALE;
-        let pixels = Doll::dressed(model, assets, [wide, ground], span)?.cut_out(Side::Front)?;
+        let pixels = Doll::dressed(model, assets, [wide, ground], span)?.cut_out(DollSide::Front)?;
         dolls.push(embed("png", &png(&pixels, wide, ground, ColorType::Rgba).ok()?));
     }
     let (right, end) = (LEFT + wide * infants.len(), LEFT / 2);

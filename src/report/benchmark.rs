@@ -3,7 +3,7 @@
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 use super::svg::download;
-use crate::eval::{Benchmark, Interval, Row};
+use crate::eval::{Benchmark, BenchmarkRow, ConfidenceInterval};
 use crate::text::quoted;
 
 const STYLE: &str = include_str!("style.css");
@@ -49,7 +49,7 @@ pub fn benchmark_page(benchmark: &Benchmark) -> String {
 }
 
 /// Draws the charts and the table of a configuration.
-fn section(first: &Row, group: &[Row], columns: &[(String, String, usize)]) -> Markup {
+fn section(first: &BenchmarkRow, group: &[BenchmarkRow], columns: &[(String, String, usize)]) -> Markup {
     let shown = || {
         columns
             .iter()
@@ -77,7 +77,7 @@ fn section(first: &Row, group: &[Row], columns: &[(String, String, usize)]) -> M
     }
 }
 
-fn label(row: &Row) -> String {
+fn label(row: &BenchmarkRow) -> String {
     let policy = quoted(&row.policy);
     match row.age {
         Some(age) => format!("{policy}, {age} months"),
@@ -86,15 +86,15 @@ fn label(row: &Row) -> String {
 }
 
 /// Returns the height of a chart.
-fn height(group: &[Row]) -> f64 {
+fn height(group: &[BenchmarkRow]) -> f64 {
     ROW[1] * group.len() as f64 + 6.0
 }
 
 /// Draws means with their intervals, a line for each row.
-fn chart(group: &[Row], name: &str, decimals: usize) -> Markup {
+fn chart(group: &[BenchmarkRow], name: &str, decimals: usize) -> Markup {
     let [width, height, left] = ROW;
     let found = || group.iter().filter_map(|row| row.metrics.get(name));
-    let low = found().fold(0.0_f64, |low, i: &Interval| low.min(i.low));
+    let low = found().fold(0.0_f64, |low, i: &ConfidenceInterval| low.min(i.low));
     let high = found().fold(0.0_f64, |high, i| high.max(i.high));
     let span = if high > low { high - low } else { 1.0 };
     let at = |value: f64| left + (value - low) / span * (width - left - 70.0);

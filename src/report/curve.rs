@@ -16,16 +16,16 @@ const MARGIN: [f64; 4] = [44.0, 26.0, 12.0, 34.0];
 const MAX_POINTS: usize = 500;
 
 /// A line of the chart.
-struct Line {
+struct CurveLine {
     class: &'static str,
     label: String,
     values: Vec<f64>,
 }
 
 /// The quantity drawn over the episodes.
-struct Chart {
+struct CurveChart {
     unit: &'static str,
-    lines: Vec<Line>,
+    lines: Vec<CurveLine>,
     /// One for each episode.
     dots: Vec<f64>,
     /// A height to be reached, with its name.
@@ -37,7 +37,7 @@ struct Chart {
     dot: &'static str,
 }
 
-impl Chart {
+impl CurveChart {
     /// Reserves values.
     fn include(&mut self, values: &[f64]) {
         for v in values {
@@ -91,7 +91,7 @@ fn seen_alone(record: &Info) -> f64 {
 }
 
 /// Charts the different parts touched so far by each hand, and in each episode alone by both.
-fn touches(records: &[Info], reachable: usize) -> Chart {
+fn touches(records: &[Info], reachable: usize) -> CurveChart {
     let so_far = |hand: usize| {
         let mut seen: Vec<usize> = Vec::new();
         let each = records.iter().map(|r| {
@@ -104,7 +104,7 @@ fn touches(records: &[Info], reachable: usize) -> Chart {
         each.collect::<Vec<f64>>()
     };
     let dots: Vec<f64> = records.iter().map(touched_alone).collect();
-    Chart {
+    CurveChart {
         unit: "parts",
         lines: vec![
             line("right", "right hand, so far", so_far(0)),
@@ -120,7 +120,7 @@ fn touches(records: &[Info], reachable: usize) -> Chart {
 }
 
 /// Charts the share of the steps with a hand in view, for each hand as a moving mean, and for both in each episode.
-fn regards(records: &[Info]) -> Chart {
+fn regards(records: &[Info]) -> CurveChart {
     let share = |r: &Info, pairs: [usize; 2]| {
         let counts = r.behavior.regards().unwrap_or_default();
         let seen: f64 = pairs.iter().map(|&k| counts[k] as f64).sum();
@@ -138,7 +138,7 @@ fn regards(records: &[Info]) -> Chart {
         .flat_map(|l| &l.values)
         .chain(&dots)
         .fold(0.0, |m: f64, v| m.max(*v));
-    Chart {
+    CurveChart {
         unit: "% of steps",
         lines,
         dots,
@@ -155,12 +155,12 @@ fn return_alone(record: &Info) -> f64 {
 }
 
 /// Charts the return of each episode, and the share of successes, 100 % of which is the upper end of the axis.
-fn returns(records: &[Info]) -> Chart {
+fn returns(records: &[Info]) -> CurveChart {
     let dots: Vec<f64> = records.iter().map(return_alone).collect();
     let success = |r: &Info| r.behavior.task().is_some_and(|info| info.outcome.is_success);
     let successes: Vec<f64> = records.iter().map(|r| f64::from(u8::from(success(r)))).collect();
     let share = 100.0 * successes.iter().sum::<f64>() / records.len().max(1) as f64;
-    let mut chart = Chart {
+    let mut chart = CurveChart {
         unit: "return",
         lines: vec![line("both", "moving mean of single episodes", smooth(&dots))],
         bottom: 0.0,
@@ -174,12 +174,12 @@ fn returns(records: &[Info]) -> Chart {
     let label = format!("successes, moving mean; the upper end is 100 % ({share:.1} % in all)");
     let values = smooth(&successes).iter().map(|v| v * top).collect();
     chart.lines.push(line("right", label, values));
-    Chart { dots, ..chart }
+    CurveChart { dots, ..chart }
 }
 
-fn line(class: &'static str, label: impl Into<String>, values: Vec<f64>) -> Line {
+fn line(class: &'static str, label: impl Into<String>, values: Vec<f64>) -> CurveLine {
     let label = label.into();
-    Line { class, label, values }
+    CurveLine { class, label, values }
 }
 
 /// Returns moving means over the last tenth of the values so far, at least over five.
@@ -226,7 +226,7 @@ fn marks_between(bottom: f64, top: f64) -> Vec<f64> {
     all
 }
 
-fn draw(chart: &Chart, episodes: usize) -> Markup {
+fn draw(chart: &CurveChart, episodes: usize) -> Markup {
     let [left, top, right, bottom] = MARGIN;
     let inner = [SIZE[0] - left - right, SIZE[1] - top - bottom];
     let last = episodes.max(2) as f64;
@@ -234,7 +234,7 @@ fn draw(chart: &Chart, episodes: usize) -> Markup {
     let y = |value: f64| top + (1.0 - (value - chart.bottom) / (chart.top - chart.bottom)) * inner[1];
     let stride = episodes.div_ceil(MAX_POINTS).max(1);
     let chosen = || (0..episodes).filter(move |k| k % stride == 0 || k + 1 == episodes);
-    let path = |line: &Line| {
+    let path = |line: &CurveLine| {
         let mut d = String::new();
         for (n, k) in chosen().filter(|&k| k < line.values.len()).enumerate() {
             let letter = if n == 0 { 'M' } else { 'L' };

@@ -35,7 +35,7 @@ const FACE: [&str; 3] = ["head", "left_eye", "right_eye"];
 
 /// The side from which MIMo is seen.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Side {
+pub(super) enum DollSide {
     Front,
     Back,
 }
@@ -137,7 +137,7 @@ impl Doll {
     }
 
     /// Draws a PNG image with a transparent background, each geom in a colour.
-    pub fn draw(&mut self, side: Side, color: &dyn Fn(usize) -> [f32; 3]) -> Option<Vec<u8>> {
+    pub fn draw(&mut self, side: DollSide, color: &dyn Fn(usize) -> [f32; 3]) -> Option<Vec<u8>> {
         for drawable in &mut self.scenery.drawables {
             if let Element::Geom(g) = drawable.element {
                 let [r, g, b] = match drawable.texture {
@@ -153,9 +153,9 @@ impl Doll {
     }
 
     /// Draws MIMo in his colours with a transparent background: red, green, blue and opacity.
-    pub fn cut_out(&mut self, side: Side) -> Option<Vec<u8>> {
+    pub fn cut_out(&mut self, side: DollSide) -> Option<Vec<u8>> {
         let frame = self.state.xmat[self.hip];
-        let turn = if side == Side::Front { 1.0 } else { -1.0 };
+        let turn = if side == DollSide::Front { 1.0 } else { -1.0 };
         let (forward, left, up) = (
             scale(column(&frame, 0), turn),
             scale(column(&frame, 1), turn),

@@ -4,7 +4,7 @@ use std::f64::consts::FRAC_1_SQRT_2;
 
 use maud::{Markup, html};
 
-use super::run::Evaluated;
+use super::run::EvaluationEpisode;
 use crate::config::{Compat, Config};
 use crate::math::*;
 use crate::model::Model;
@@ -49,7 +49,7 @@ impl Gaze {
 
     /// Counts directions over evaluation logs; returns `None` if the model has no eyes or hands, or does not fit the
     /// logs.
-    pub fn new(model: &Model, evaluations: &[Evaluated], config: &Config) -> Option<Self> {
+    pub fn new(model: &Model, evaluations: &[EvaluationEpisode], config: &Config) -> Option<Self> {
         let eyes = [model.camera("eye_right")?, model.camera("eye_left")?];
         let hands = [model.body("right_hand")?, model.body("left_hand")?];
         let cells = (2.0 * REACH / CELL) as usize;
@@ -198,7 +198,7 @@ mod tests {
             log.push(&env.state().qpos, env.info());
         }
         let counted = env.info().behavior.regards().expect("hand_regard");
-        let evaluated = Evaluated {
+        let evaluated = EvaluationEpisode {
             episode: 0,
             log,
             video: None,

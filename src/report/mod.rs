@@ -22,7 +22,7 @@ use thiserror::Error;
 pub use benchmark::benchmark_page;
 
 use crate::files::replace_file;
-use run::Run;
+use run::RunContents;
 
 /// An error in building a report.
 #[derive(Debug, Error)]
@@ -94,7 +94,7 @@ impl Report {
     /// # Errors
     /// A folder that is missing or is not that of a run; no readable logs.
     pub fn new(save_dir: impl AsRef<Path>) -> Result<Self, ReportError> {
-        Ok(Self::of(Run::read(save_dir.as_ref())?))
+        Ok(Self::of(RunContents::read(save_dir.as_ref())?))
     }
 
     /// Builds the report of the folder of a run with the learning curve of another training, such as one with random
@@ -103,12 +103,12 @@ impl Report {
     /// # Errors
     /// As [`Report::new`]; a baseline without a training log of the same behavior.
     pub fn with_baseline(save_dir: impl AsRef<Path>, baseline: impl AsRef<Path>) -> Result<Self, ReportError> {
-        let mut run = Run::read(save_dir.as_ref())?;
+        let mut run = RunContents::read(save_dir.as_ref())?;
         run.compare(baseline.as_ref())?;
         Ok(Self::of(run))
     }
 
-    fn of(mut run: Run) -> Self {
+    fn of(mut run: RunContents) -> Self {
         Self {
             html: page::page(&mut run),
             notices: run.notices,

@@ -11,7 +11,7 @@ use self::evaluation::evaluation_section;
 use self::touch::touch_section;
 use super::curve::curve;
 use super::gaze::Gaze;
-use super::run::Run;
+use super::run::RunContents;
 use super::svg::download;
 use crate::config::{Behavior, Compat, Config, Scene};
 use crate::env::{EYE_HAND_PAIRS, Info, Outcome, TaskInfo};
@@ -58,7 +58,7 @@ fn grouped(n: u64) -> String {
     out
 }
 
-fn title(run: &Run) -> String {
+fn title(run: &RunContents) -> String {
     if let Some(task) = &run.task {
         return format!("Task {task}");
     }
@@ -92,13 +92,13 @@ fn title(run: &Run) -> String {
 }
 
 /// Returns the simulated time of a step, s.
-fn step_time(run: &Run) -> f64 {
+fn step_time(run: &RunContents) -> f64 {
     let skip = run.config.as_ref().map_or(1, |c| c.frame_skip);
     run.model.as_ref().map_or(0.005, |m| m.opt.timestep) * f64::from(skip)
 }
 
 /// Returns the whole page, and adds notices about parts that could not be drawn.
-pub(super) fn page(run: &mut Run) -> String {
+pub(super) fn page(run: &mut RunContents) -> String {
     let body = match run.behavior {
         Behavior::SelfTouch => touch_section(run),
         Behavior::HandRegard => gaze_section(run),
@@ -137,7 +137,7 @@ pub(super) fn page(run: &mut Run) -> String {
     markup.into_string()
 }
 
-fn header(run: &Run) -> Markup {
+fn header(run: &RunContents) -> Markup {
     let about = run.config.as_ref().map(|c| {
         let version = Version::of(c.behavior).name();
         format!(
@@ -160,7 +160,7 @@ fn card(value: &str, what: &str) -> Markup {
     html! { div.card { b { (value) } span { (what) } } }
 }
 
-fn score_section(run: &Run) -> Markup {
+fn score_section(run: &RunContents) -> Markup {
     let Some(score) = &run.score else {
         return html! {};
     };
@@ -201,7 +201,7 @@ fn score_section(run: &Run) -> Markup {
 }
 
 /// Sums up the episodes of a task: of training, or, without that, of the evaluation.
-fn task_section(run: &Run) -> Markup {
+fn task_section(run: &RunContents) -> Markup {
     let last = run.evaluations.iter().filter_map(|e| e.log.info.last());
     let records: Vec<&Info> = match run.counted() {
         [] => last.collect(),
@@ -269,7 +269,7 @@ fn fractions_table(fractions: &[f64; 4]) -> Markup {
     }
 }
 
-fn curve_section(run: &Run) -> Markup {
+fn curve_section(run: &RunContents) -> Markup {
     let reachable = run.touchables.as_ref().map_or(31, |t| t.reachable(0).len());
     let Some(chart) = curve(run.counted(), run.baseline.as_ref(), reachable) else {
         return html! {};
@@ -292,7 +292,7 @@ fn curve_section(run: &Run) -> Markup {
     }
 }
 
-fn gaze_section(run: &mut Run) -> Markup {
+fn gaze_section(run: &mut RunContents) -> Markup {
     let compat = run.compat();
     let config = run.config.clone().unwrap_or_default();
     let gaze = run.model.as_ref().and_then(|m| Gaze::new(m, &run.evaluations, &config));

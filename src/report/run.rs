@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use super::ReportError;
 use crate::config::{Behavior, Compat, Config, Scene};
 use crate::env::Info;
-use crate::eval::{Score, Touchables};
+use crate::eval::{Score, TouchableGeoms};
 use crate::mimo::{build_model, embedded};
 use crate::model::Model;
 use crate::runs::logs::{EvaluationLog, evaluation_path, read_training, training_path};
@@ -16,7 +16,7 @@ use crate::runs::{read_scene, scene_config};
 const MAX_EVALUATIONS: usize = 100;
 
 /// An evaluation episode.
-pub(super) struct Evaluated {
+pub(super) struct EvaluationEpisode {
     pub episode: u64,
     pub log: EvaluationLog,
     /// The video, if there is one.
@@ -32,7 +32,7 @@ pub(super) struct Baseline {
 }
 
 /// A run.
-pub(super) struct Run {
+pub(super) struct RunContents {
     pub dir: PathBuf,
     pub behavior: Behavior,
     /// The name of a user-defined task.
@@ -40,15 +40,15 @@ pub(super) struct Run {
     pub config: Option<Config>,
     /// The scene of the run, or, if that does not load here, one with the same MIMo.
     pub model: Option<Model>,
-    pub touchables: Option<Touchables>,
+    pub touchables: Option<TouchableGeoms>,
     pub training: Vec<Info>,
     pub score: Option<Score>,
-    pub evaluations: Vec<Evaluated>,
+    pub evaluations: Vec<EvaluationEpisode>,
     pub notices: Vec<String>,
     pub baseline: Option<Baseline>,
 }
 
-impl Run {
+impl RunContents {
     /// Reads as much of a run's folder as possible; missing or damaged parts become notices.
     pub fn read(dir: &Path) -> Result<Self, ReportError> {
         let path = || dir.to_path_buf();
@@ -89,7 +89,7 @@ impl Run {
         let behavior = known.or(of_config).unwrap_or_default();
         let nq = evaluations.first().map(|e| e.log.nq);
         let (model, own) = scene(dir, behavior, nq, &mut notices);
-        let touchables = model.as_ref().and_then(Touchables::new);
+        let touchables = model.as_ref().and_then(TouchableGeoms::new);
         // the parts of a likely scene need not be those of the run
         let skin = touchables.as_ref().filter(|_| own);
         let compat = config.as_ref().map_or(Compat::Api, |c| c.compat);
@@ -163,7 +163,7 @@ impl Run {
 }
 
 /// Returns the score of a training, unless it is of a task, which has none. `skin` has the parts that the hands can reach.
-fn score(training: &[Info], compat: Compat, skin: Option<&Touchables>, notices: &mut Vec<String>) -> Option<Score> {
+fn score(training: &[Info], compat: Compat, skin: Option<&TouchableGeoms>, notices: &mut Vec<String>) -> Option<Score> {
     if training.is_empty() || training.iter().any(|r| r.behavior.task().is_some()) {
         return None;
     }
@@ -219,7 +219,7 @@ fn likely_scene(behavior: Behavior, nq: Option<usize>) -> Option<Model> {
         };
         build_model(&config, &embedded()).ok()
     };
-    let mut models = Scene::ALL.iter().filter_map(build);
+    let mut models = Scene::BABYBENCH.iter().filter_map(build);
     models.find(|m| nq.is_none_or(|nq| nq == m.nq))
 }
 
@@ -241,7 +241,7 @@ fn episodes(dir: &Path) -> Result<Vec<u64>, ReportError> {
     Ok(found)
 }
 
-fn evaluations(dir: &Path, episodes: &[u64], failures: &mut Vec<String>) -> Vec<Evaluated> {
+fn evaluations(dir: &Path, episodes: &[u64], failures: &mut Vec<String>) -> Vec<EvaluationEpisode> {
     let mut out = Vec::new();
     for &episode in episodes.iter().take(MAX_EVALUATIONS) {
         match EvaluationLog::read(evaluation_path(dir, episode)) {
@@ -249,7 +249,7 @@ fn evaluations(dir: &Path, episodes: &[u64], failures: &mut Vec<String>) -> Vec<
             Ok(log) => {
                 let video = dir.join("videos").join(format!("evaluation_{episode}.avi"));
                 let video = video.is_file().then_some(video);
-                out.push(Evaluated { episode, log, video });
+                out.push(EvaluationEpisode { episode, log, video });
             }
             Err(e) => failures.push(e.to_string()),
         }

@@ -16,7 +16,7 @@ const MAX_CHUNKS: usize = 1 << 20;
 
 /// A moment of an episode.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(super) struct Moment {
+pub(super) struct EpisodeMoment {
     /// Step, from 0.
     pub step: usize,
     /// The event.
@@ -25,7 +25,7 @@ pub(super) struct Moment {
 
 /// Finds the moments of an episode worth a picture, in their order: the first touches of each part, or the starts of the longest looks at
 /// a hand; then evenly spread moments up to the limit.
-pub(super) fn moments(log: &EvaluationLog, names: Option<&PartNames>) -> Vec<Moment> {
+pub(super) fn moments(log: &EvaluationLog, names: Option<&PartNames>) -> Vec<EpisodeMoment> {
     let mut chosen = match log.info.first().map(|i| &i.behavior) {
         Some(BehaviorInfo::SelfTouch { .. }) => first_touches(&log.info, names),
         Some(BehaviorInfo::HandRegard { .. }) => looks(&log.info),
@@ -38,16 +38,16 @@ pub(super) fn moments(log: &EvaluationLog, names: Option<&PartNames>) -> Vec<Mom
         let gap = (last / (2 * FRAMES)).max(1);
         if chosen.len() < FRAMES && chosen.iter().all(|m| m.step.abs_diff(step) >= gap) {
             let text = String::new();
-            chosen.push(Moment { step, text });
+            chosen.push(EpisodeMoment { step, text });
         }
     }
     chosen.sort_by_key(|m| m.step);
     chosen
 }
 
-fn first_touches(info: &[Info], names: Option<&PartNames>) -> Vec<Moment> {
+fn first_touches(info: &[Info], names: Option<&PartNames>) -> Vec<EpisodeMoment> {
     let mut known = [0, 0];
-    let mut out: Vec<Moment> = Vec::new();
+    let mut out: Vec<EpisodeMoment> = Vec::new();
     for (step, touches) in info
         .iter()
         .map(|i| i.behavior.touches().unwrap_or_default())
@@ -59,7 +59,7 @@ fn first_touches(info: &[Info], names: Option<&PartNames>) -> Vec<Moment> {
                 let text = format!("the {name} hand touches {}", part.replace('_', " "));
                 match out.last_mut().filter(|m| m.step == step) {
                     Some(m) => m.text = format!("{}; {text}", m.text),
-                    None => out.push(Moment { step, text }),
+                    None => out.push(EpisodeMoment { step, text }),
                 }
             }
             known[hand] = touches[hand].len();
@@ -69,7 +69,7 @@ fn first_touches(info: &[Info], names: Option<&PartNames>) -> Vec<Moment> {
 }
 
 /// Finds the spans of steps in which an eye has a hand in view, the longest first.
-fn looks(info: &[Info]) -> Vec<Moment> {
+fn looks(info: &[Info]) -> Vec<EpisodeMoment> {
     let counts: Vec<[u64; 4]> = info.iter().filter_map(|i| i.behavior.regards()).collect();
     let mut spans: Vec<(usize, usize, usize)> = Vec::new();
     for pair in 0..4 {
@@ -87,7 +87,7 @@ fn looks(info: &[Info]) -> Vec<Moment> {
         }
     }
     spans.sort_by(|a, b| b.0.cmp(&a.0).then(a.1.cmp(&b.1)));
-    let mut out: Vec<Moment> = Vec::new();
+    let mut out: Vec<EpisodeMoment> = Vec::new();
     for (length, step, pair) in spans {
         let name = EYE_HAND_PAIRS[pair]
             .replacen("eye_", "eye on the ", 1)
@@ -96,7 +96,7 @@ fn looks(info: &[Info]) -> Vec<Moment> {
         match out.iter_mut().find(|m| m.step.abs_diff(step) < 5) {
             Some(m) if m.text.matches(';').count() < 1 => m.text = format!("{}; {text}", m.text),
             Some(_) => {}
-            None => out.push(Moment { step, text }),
+            None => out.push(EpisodeMoment { step, text }),
         }
     }
     out

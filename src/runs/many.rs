@@ -6,7 +6,7 @@ use super::logs::TrainingLog;
 use super::training::{RunError, open_training_log};
 use crate::config::Compat;
 use crate::env::Blueprint;
-use crate::vector::{AutoresetMode, Batch, VectorEnv, VectorError, VectorOptions};
+use crate::vector::{AutoresetMode, VectorEnv, VectorError, VectorOptions, VectorStep};
 
 /// A [`VectorEnv`] whose episodes are added to one training log as they end.
 ///
@@ -109,7 +109,7 @@ impl RunVector {
     ///
     /// # Errors
     /// As [`VectorEnv::step`]; a diverged environment that [`RunVector::start_episodes`] has not restarted.
-    pub fn step(&mut self, actions: &[f32]) -> Result<Batch<'_>, RunError> {
+    pub fn step(&mut self, actions: &[f32]) -> Result<VectorStep<'_>, RunError> {
         let len = self.vector.single_action_space().len().max(1);
         let n = actions.len() / len;
         if n == 0 || n >= self.vector.len() {

@@ -59,17 +59,17 @@ pub use logs::{EvaluationLog, TrainingTotals};
 pub use logs::{LogError, TrainingLog, read_training};
 pub use many::RunVector;
 #[cfg(feature = "npz")]
-pub use motion::{Motion, MotionError, Played, Playing, play_motion};
+pub use motion::{Motion, MotionError, MotionMode, MotionResult, play_motion};
 #[cfg(feature = "npz")]
 pub use record::{ArrayDescription, EpisodeDescription, GeomDescription, JointDescription, Manifest};
 #[cfg(feature = "npz")]
-pub use record::{Record, RecordError, RecordOptions, Recorder, Replayed, VectorRecorder};
+pub use record::{Record, RecordError, RecordOptions, Recorder, RepeatResult, VectorRecorder};
 #[cfg(feature = "npz")]
 pub use replay::{EpisodeStart, Recording, Replay, ReplayError, TaskRows, TouchRows, replay, replay_with_images};
 #[cfg(feature = "report")]
 pub(crate) use scene_file::scene_config;
 pub use scene_file::{
-    KeptScene, SceneFile, complete_scene, complete_scene_from, keep_scene, scene_compat, write_scene_from,
+    SceneFile, SceneFileStatus, complete_scene, complete_scene_from, keep_scene, scene_compat, write_scene_from,
 };
 pub use scene_file::{SceneFileError, write_scene};
 pub use scene_file::{read_config, read_scene};

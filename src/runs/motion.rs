@@ -7,7 +7,7 @@ mod track;
 
 use std::path::{Path, PathBuf};
 
-pub use play::{Played, Playing, play_motion};
+pub use play::{MotionMode, MotionResult, play_motion};
 use thiserror::Error;
 
 use crate::env::EnvError;

@@ -21,11 +21,11 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 pub use manifest::{ArrayDescription, EpisodeDescription, GeomDescription, JointDescription, Manifest};
 pub use many::VectorRecorder;
-pub use read::{Record, Replayed};
-use rows::Rows;
+pub use read::{Record, RepeatResult};
+use rows::EpisodeRows;
 use thiserror::Error;
 
-use crate::env::{Detailed, Env, EnvError, SnapshotError};
+use crate::env::{Env, EnvError, InfoWithDetails, SnapshotError};
 use crate::files::replace_file;
 use crate::formats::npz::NpzError;
 use crate::json;
@@ -132,7 +132,7 @@ pub struct RecordOptions {
 
 /// The state shared by the recorders of one folder.
 #[derive(Debug)]
-struct Shared {
+struct RecordFolder {
     dir: PathBuf,
     options: RecordOptions,
     manifest: Mutex<Manifest>,
@@ -164,10 +164,10 @@ struct Shared {
 /// ```
 #[derive(Debug)]
 pub struct Recorder {
-    shared: Arc<Shared>,
-    rows: Option<(u64, Box<Rows>)>,
+    shared: Arc<RecordFolder>,
+    rows: Option<(u64, Box<EpisodeRows>)>,
     /// The rows of a finished episode, kept for their allocations.
-    spare: Option<Box<Rows>>,
+    spare: Option<Box<EpisodeRows>>,
 }
 
 impl Recorder {
@@ -190,7 +190,7 @@ impl Recorder {
             path: dir.clone(),
             source,
         })?;
-        let shared = Shared {
+        let shared = RecordFolder {
             manifest: Mutex::new(Manifest::of(env, &options)),
             dir,
             options,
@@ -234,7 +234,7 @@ impl Recorder {
                 rows.begin(env, options);
                 rows
             }
-            None => Box::new(Rows::new(env, options)),
+            None => Box::new(EpisodeRows::new(env, options)),
         };
         self.rows = Some((episode, rows));
     }
@@ -312,7 +312,7 @@ impl Recorder {
             steps: rows.len() as u64,
             crc32: crc32fast::hash(&bytes),
             last_checksum: rows.last_checksum(),
-            info: serde_json::to_value(Detailed::from(env.info())).unwrap_or_default(),
+            info: serde_json::to_value(InfoWithDetails::from(env.info())).unwrap_or_default(),
             age: None,
             unfinished,
         };

@@ -15,7 +15,7 @@ use crate::config::{Compat, Config, ConfigError};
 use crate::env::Blueprint;
 use crate::files::{self, replace_file};
 use crate::limits::Limits;
-use crate::mimo::{RoomError, Version, document_path, embedded, has_own_scene, open_room, scene_xml};
+use crate::mimo::{CustomSceneError, Version, document_path, embedded, has_own_scene, open_custom_scene, scene_xml};
 use crate::mjcf_loader::{LoadError, load};
 use crate::model::Model;
 use crate::physics::compile;
@@ -48,7 +48,7 @@ pub enum SceneFileError {
     Load(#[from] LoadError),
     /// A custom scene that cannot be read.
     #[error(transparent)]
-    Room(#[from] RoomError),
+    CustomScene(#[from] CustomSceneError),
     /// The folder holds the scene of another run.
     #[error(
         "{}: this is {found}, but the configuration describes {wanted}; positions and geoms in the logs would not \
@@ -89,7 +89,7 @@ pub fn complete_scene(config: &Config) -> Result<SceneFile, SceneFileError> {
 /// # Errors
 /// Assets that are missing or not XML.
 pub fn complete_scene_from(config: &Config, assets: &dyn AssetSource) -> Result<SceneFile, SceneFileError> {
-    let room = open_room(config, assets)?;
+    let room = open_custom_scene(config, assets)?;
     complete_document(&scene_xml(config), config, room.as_ref().map_or(assets, |room| room))
 }
 
@@ -142,7 +142,7 @@ fn write_scene_file(scene: &SceneFile, save_dir: &Path) -> Result<PathBuf, Scene
 
 /// The state of the scene in the folder of a run; see [`keep_scene`].
 #[derive(Debug)]
-pub enum KeptScene {
+pub enum SceneFileStatus {
     /// There was none, and it was written.
     Written,
     /// It is the same scene.
@@ -159,24 +159,24 @@ pub enum KeptScene {
 ///
 /// # Errors
 /// [`SceneFileError::Different`] for a scene in which positions and geom ids mean something else; errors of the file system.
-pub fn keep_scene(blueprint: &Blueprint) -> Result<KeptScene, SceneFileError> {
+pub fn keep_scene(blueprint: &Blueprint) -> Result<SceneFileStatus, SceneFileError> {
     let (config, model) = (blueprint.config(), blueprint.model());
     let save_dir = Path::new(&config.save_dir);
     let path = save_dir.join(SCENE);
     if !path.exists() {
         write_scene_of(blueprint)?;
-        return Ok(KeptScene::Written);
+        return Ok(SceneFileStatus::Written);
     }
     Ok(match read_scene(save_dir) {
-        Ok(found) if found == **model => KeptScene::Same,
-        Ok(found) if same_ids(&found, model) => KeptScene::Similar,
+        Ok(found) if found == **model => SceneFileStatus::Same,
+        Ok(found) if same_ids(&found, model) => SceneFileStatus::Similar,
         Ok(_) => {
             let found = scene_config(save_dir);
             let found = found.map_or_else(|| "another scene".to_string(), |found| about(&found));
             let wanted = about(config);
             return Err(SceneFileError::Different { path, found, wanted });
         }
-        Err(e) => KeptScene::Foreign(Box::new(e)),
+        Err(e) => SceneFileStatus::Foreign(Box::new(e)),
     })
 }
 

@@ -13,7 +13,7 @@ mod vision;
 
 pub use pain::Pain;
 pub use proprioception::limit_activation;
-pub use proprioception::{Component, Entry, Proprioception};
+pub use proprioception::{Proprioception, ProprioceptionComponent, ProprioceptionEntry};
 pub use sense::ObservationEntry;
 pub(crate) use sense::observation_entries;
 pub use touch::TouchPool;

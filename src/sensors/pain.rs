@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use crate::config::{Compat, Config, PainOptions, TouchFunction};
 use crate::model::Model;
-use crate::sensors::transform::Waiting as _;
+use crate::sensors::transform::DelayValues as _;
 use crate::sensors::{SkinLayout, SkinValues, Touch};
 
 /// The sense of pain of one environment: a number for each touch sensor.

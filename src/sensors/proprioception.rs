@@ -13,7 +13,7 @@ const LIMIT_THRESHOLD: f64 = 0.035;
 
 /// A part of the proprioceptive vector.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Component {
+pub enum ProprioceptionComponent {
     /// Joint angles, rad.
     Angles,
     /// Joint velocities, rad/s.
@@ -26,7 +26,7 @@ pub enum Component {
     Actuation,
 }
 
-impl Component {
+impl ProprioceptionComponent {
     /// Returns the name of the component, for logs and labels.
     pub fn name(self) -> &'static str {
         match self {
@@ -41,11 +41,11 @@ impl Component {
 
 /// One entry of the proprioceptive vector: a single number, or the three of a torque sensor.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Entry {
+pub struct ProprioceptionEntry {
     /// Range of the vector.
     pub range: Range<usize>,
     /// Component that it belongs to.
-    pub component: Component,
+    pub component: ProprioceptionComponent,
     /// Name of the joint for angles, velocities and limits, or of the torque sensor; for actuation, the name that the
     /// actuation model gives.
     pub name: String,
@@ -61,17 +61,17 @@ pub struct Proprioception {
     torque_sensors: Vec<usize>,
     /// The first value of each.
     torque_adr: Vec<usize>,
-    layout: Vec<(Component, Range<usize>)>,
+    layout: Vec<(ProprioceptionComponent, Range<usize>)>,
 }
 
 impl Proprioception {
     /// Lays out the observation of `model`, to which actuation contributes `actuation_len` values.
     pub fn new(model: &Model, config: &Config, actuation_len: usize) -> Self {
-        use Component::*;
+        use ProprioceptionComponent::*;
         let joints = MimoJoints::new(model);
         let is_torque = |i: &usize| model.sensor_type[*i] == SensorType::Torque;
         let torque_sensors: Vec<usize> = MimoBodies::of(model).sensors().into_iter().filter(is_torque).collect();
-        let components: Vec<Component> = match config.compat {
+        let components: Vec<ProprioceptionComponent> = match config.compat {
             Compat::Reference => vec![Actuation, Limits, Angles, Velocities, Torques],
             Compat::Api => [
                 (Angles, true),
@@ -116,29 +116,33 @@ impl Proprioception {
     }
 
     /// Returns the components and their ranges, in order.
-    pub fn layout(&self) -> &[(Component, Range<usize>)] {
+    pub fn layout(&self) -> &[(ProprioceptionComponent, Range<usize>)] {
         &self.layout
     }
 
     /// Returns the range of one component; `None` if it is off.
-    pub fn range(&self, component: Component) -> Option<Range<usize>> {
+    pub fn range(&self, component: ProprioceptionComponent) -> Option<Range<usize>> {
         self.layout.iter().find(|l| l.0 == component).map(|l| l.1.clone())
     }
 
     /// Iterates over the entries of the vector in order: single numbers, and three for each torque sensor. `actuation`
     /// is the model that the vector was laid out for.
-    pub fn entries(&self, model: &Model, actuation: &dyn Actuation) -> Vec<Entry> {
+    pub fn entries(&self, model: &Model, actuation: &dyn Actuation) -> Vec<ProprioceptionEntry> {
         let mut entries = Vec::new();
         for (component, range) in &self.layout {
             let names: Vec<String> = match component {
-                Component::Angles | Component::Velocities | Component::Limits => {
-                    self.joint_names(model).map(str::to_string).collect()
-                }
-                Component::Torques => self.sensor_names(model).map(str::to_string).collect(),
-                Component::Actuation => actuation.observation_names(model),
+                ProprioceptionComponent::Angles
+                | ProprioceptionComponent::Velocities
+                | ProprioceptionComponent::Limits => self.joint_names(model).map(str::to_string).collect(),
+                ProprioceptionComponent::Torques => self.sensor_names(model).map(str::to_string).collect(),
+                ProprioceptionComponent::Actuation => actuation.observation_names(model),
             };
-            let width = if *component == Component::Torques { 3 } else { 1 };
-            entries.extend(names.into_iter().enumerate().map(|(k, name)| Entry {
+            let width = if *component == ProprioceptionComponent::Torques {
+                3
+            } else {
+                1
+            };
+            entries.extend(names.into_iter().enumerate().map(|(k, name)| ProprioceptionEntry {
                 range: range.start + width * k..range.start + width * (k + 1),
                 component: *component,
                 name,
@@ -148,15 +152,15 @@ impl Proprioception {
     }
 
     /// Returns the index of a joint's number in angles, velocities or limits, or of a sensor's three numbers in torques, by name. `None`
-    /// for a component that is off, for [`Component::Actuation`] (see [`Self::entries`]) and unknown names.
-    pub fn find(&self, model: &Model, component: Component, name: &str) -> Option<Range<usize>> {
+    /// for a component that is off, for [`ProprioceptionComponent::Actuation`] (see [`Self::entries`]) and unknown names.
+    pub fn find(&self, model: &Model, component: ProprioceptionComponent, name: &str) -> Option<Range<usize>> {
         let start = self.range(component)?.start;
         let (k, width) = match component {
-            Component::Angles | Component::Velocities | Component::Limits => {
+            ProprioceptionComponent::Angles | ProprioceptionComponent::Velocities | ProprioceptionComponent::Limits => {
                 (self.joint_names(model).position(|n| n == name)?, 1)
             }
-            Component::Torques => (self.sensor_names(model).position(|n| n == name)?, 3),
-            Component::Actuation => return None,
+            ProprioceptionComponent::Torques => (self.sensor_names(model).position(|n| n == name)?, 3),
+            ProprioceptionComponent::Actuation => return None,
         };
         Some(start + width * k..start + width * (k + 1))
     }
@@ -183,19 +187,19 @@ impl Proprioception {
                 return;
             };
             match component {
-                Component::Angles => gather(&s.qpos, &self.joints.qpos, out),
-                Component::Velocities => gather(&s.qvel, &self.joints.dof, out),
-                Component::Torques => {
+                ProprioceptionComponent::Angles => gather(&s.qpos, &self.joints.qpos, out),
+                ProprioceptionComponent::Velocities => gather(&s.qvel, &self.joints.dof, out),
+                ProprioceptionComponent::Torques => {
                     for (values, &i) in out.chunks_exact_mut(3).zip(&self.torque_adr) {
                         values.copy_from_slice(&s.sensordata[i..i + 3]);
                     }
                 }
-                Component::Limits => {
+                ProprioceptionComponent::Limits => {
                     for ((v, &j), &q) in out.iter_mut().zip(&self.joints.joint).zip(&self.joints.qpos) {
                         *v = limit_activation(s.qpos[q], model.jnt_range[j]);
                     }
                 }
-                Component::Actuation => actuation.observe(model, s, out),
+                ProprioceptionComponent::Actuation => actuation.observe(model, s, out),
             }
         }
     }

@@ -166,20 +166,25 @@ pub struct ObservationEntry {
 }
 
 /// The source of an entry: a sense, and which image, of an eye.
-type Source = (Option<Sense>, Option<VisionOutput>);
+type EntrySource = (Option<Sense>, Option<VisionOutput>);
 
-const GOAL: Source = (None, None);
+const GOAL: EntrySource = (None, None);
 
-const fn sense(sense: Sense) -> Source {
+const fn sense(sense: Sense) -> EntrySource {
     (Some(sense), None)
 }
 
-const fn eye(sense: Sense, image: VisionOutput) -> Source {
+const fn eye(sense: Sense, image: VisionOutput) -> EntrySource {
     (Some(sense), Some(image))
 }
 
 impl ObservationEntry {
-    const fn new<T: Number>(key: &'static str, field: &'static str, [low, high]: [f64; 2], source: Source) -> Self {
+    const fn new<T: Number>(
+        key: &'static str,
+        field: &'static str,
+        [low, high]: [f64; 2],
+        source: EntrySource,
+    ) -> Self {
         let (sense, image) = source;
         Self {
             key,

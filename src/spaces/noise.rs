@@ -121,12 +121,12 @@ pub struct ActionNoise {
     space: BoxSpace,
     step: f64,
     rng: NumpyRng,
-    process: Process,
+    process: NoiseProcess,
 }
 
 /// The memory of a noise from step to step.
 #[derive(Clone, Debug)]
-enum Process {
+enum NoiseProcess {
     White,
     Held {
         action: Vec<f32>,
@@ -159,7 +159,7 @@ impl ActionNoise {
             space: space.clone(),
             step,
             rng: NumpyRng::seed(seed),
-            process: Process::White,
+            process: NoiseProcess::White,
         };
         made.reset(seed);
         made
@@ -170,8 +170,8 @@ impl ActionNoise {
         self.rng = NumpyRng::seed(seed);
         let (len, step, rng) = (self.space.len(), self.step, &mut self.rng);
         self.process = match self.noise {
-            Noise::White => Process::White,
-            Noise::Held { .. } => Process::Held {
+            Noise::White => NoiseProcess::White,
+            Noise::Held { .. } => NoiseProcess::Held {
                 action: Vec::with_capacity(len),
                 left: 0,
             },
@@ -180,7 +180,7 @@ impl ActionNoise {
                 let octaves = (0..OCTAVES).map(|k| pxfm::f_exp(-1.0 / f64::from(1_u32 << k)));
                 relaxing(octaves.collect(), len, rng)
             }
-            Noise::Oscillators { hertz } => Process::Oscillators(
+            Noise::Oscillators { hertz } => NoiseProcess::Oscillators(
                 (0..len)
                     .map(|_| Oscillator {
                         phase: rng.uniform_in(0.0, TAU),
@@ -210,8 +210,8 @@ impl ActionNoise {
             process,
         } = self;
         match process {
-            Process::White => space.sample(rng, action),
-            Process::Held { action: held, left } => {
+            NoiseProcess::White => space.sample(rng, action),
+            NoiseProcess::Held { action: held, left } => {
                 if *left == 0 {
                     space.sample(rng, held);
                     let seconds = match noise {
@@ -223,7 +223,7 @@ impl ActionNoise {
                 *left -= 1;
                 action.clone_from(held);
             }
-            Process::Relaxing { decays, values } => {
+            NoiseProcess::Relaxing { decays, values } => {
                 let numbers = values.chunks_exact_mut(decays.len()).map(|values| {
                     let sum = values.iter().sum::<f64>();
                     for (value, decay) in values.iter_mut().zip(&*decays) {
@@ -233,7 +233,7 @@ impl ActionNoise {
                 });
                 place(space, numbers, action);
             }
-            Process::Oscillators(all) => {
+            NoiseProcess::Oscillators(all) => {
                 let numbers = all.iter().map(|o| o.amplitude * pxfm::f_sin(o.phase + o.lag));
                 place(space, numbers, action);
                 let natural = match noise {
@@ -252,10 +252,10 @@ fn share(n: usize) -> f64 {
 }
 
 /// Starts processes in their stationary distribution, because a start from 0 would begin every episode with a pause.
-fn relaxing(decays: Vec<f64>, len: usize, rng: &mut NumpyRng) -> Process {
+fn relaxing(decays: Vec<f64>, len: usize, rng: &mut NumpyRng) -> NoiseProcess {
     let deviation = share(decays.len());
     let values = (0..len * decays.len()).map(|_| deviation * rng.normal()).collect();
-    Process::Relaxing { decays, values }
+    NoiseProcess::Relaxing { decays, values }
 }
 
 /// Moves oscillators on by a step: the mean field pulls each towards the mean phase, the more the more they agree.

@@ -14,7 +14,7 @@ const TAIL: f64 = 3.442619855899;
 const AREA: f64 = 9.91256303526217e-3;
 
 /// Right edges of the layers from the bottom, and the share of each that is certainly under the curve.
-struct Layers {
+struct ZigguratLayers {
     x: [f64; LAYERS + 1],
     share: [f64; LAYERS],
 }
@@ -24,8 +24,8 @@ fn density(x: f64) -> f64 {
     pxfm::f_exp(-0.5 * x * x)
 }
 
-fn layers() -> &'static Layers {
-    static LAYERS_OF_ALL: OnceLock<Layers> = OnceLock::new();
+fn layers() -> &'static ZigguratLayers {
+    static LAYERS_OF_ALL: OnceLock<ZigguratLayers> = OnceLock::new();
     LAYERS_OF_ALL.get_or_init(|| {
         let mut x = [0.0; LAYERS + 1];
         let mut f = density(TAIL);
@@ -36,13 +36,13 @@ fn layers() -> &'static Layers {
             f = density(x[i]);
         }
         let share = std::array::from_fn(|i| x[i + 1] / x[i]);
-        Layers { x, share }
+        ZigguratLayers { x, share }
     })
 }
 
 /// Draws a number of the standard normal distribution. `word` gives 64 random bits.
 pub(super) fn normal(mut word: impl FnMut() -> u64) -> f64 {
-    let Layers { x, share } = layers();
+    let ZigguratLayers { x, share } = layers();
     loop {
         let bits = word();
         // the lowest 7 bits choose the layer, the highest 53 the place: they share none, or layers would have preferred

@@ -6,7 +6,7 @@ use crate::vector::Infos;
 /// The results of a step, a reset or [`VectorEnv::recv`](super::VectorEnv::recv): arrays with a row for each environment.
 /// They belong to the vector and change with the next call.
 #[derive(Clone, Copy, Debug)]
-pub struct Batch<'a> {
+pub struct VectorStep<'a> {
     /// The environment of each row (rows).
     pub ids: &'a [usize],
     /// Observations: every sense is an array of rows, (rows, len).
@@ -20,13 +20,13 @@ pub struct Batch<'a> {
     /// Information.
     pub infos: Infos<'a>,
     /// The ends of the episodes that ended in this step, with [`AutoresetMode::SameStep`](super::AutoresetMode).
-    pub finals: Option<Finals<'a>>,
+    pub finals: Option<EpisodeEndRows<'a>>,
     /// The environments that could not continue, usually because the simulation diverged, in ascending order. Their rows hold the
     /// previous observation, and `truncated`. The mode decides when they are reset.
-    pub failures: &'a [Failure],
+    pub failures: &'a [EnvFailure],
 }
 
-impl<'a> Batch<'a> {
+impl<'a> VectorStep<'a> {
     /// Returns the number of rows.
     pub fn len(&self) -> usize {
         self.ids.len()
@@ -45,7 +45,7 @@ impl<'a> Batch<'a> {
 
 /// The ends of episodes, in the rows of the environments whose episode ended.
 #[derive(Clone, Copy, Debug)]
-pub struct Finals<'a> {
+pub struct EpisodeEndRows<'a> {
     /// Which rows hold the end of an episode (rows).
     pub ended: &'a [bool],
     /// The last observations; every sense is an array of rows, (rows, len).
@@ -54,7 +54,7 @@ pub struct Finals<'a> {
     pub infos: Infos<'a>,
 }
 
-impl<'a> Finals<'a> {
+impl<'a> EpisodeEndRows<'a> {
     /// Returns the last observation of a row's episode, if the row exists and the episode has ended.
     pub fn row(&self, row: usize) -> Option<Observation<'a>> {
         let ended = self.ended.get(row).copied().unwrap_or(false);
@@ -64,7 +64,7 @@ impl<'a> Finals<'a> {
 
 /// An environment that could not continue.
 #[derive(Debug)]
-pub struct Failure {
+pub struct EnvFailure {
     /// The environment.
     pub env: usize,
     /// The reason.

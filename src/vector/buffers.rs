@@ -5,7 +5,7 @@ use crate::sensors::transform::Sense;
 use crate::sensors::{ObservationEntry, observation_entries};
 use crate::spaces::{Number, ValuesMut};
 use crate::vector::VectorError;
-use crate::vector::rows::Layout;
+use crate::vector::rows::RowLayout;
 
 macro_rules! buffers {
     (
@@ -58,7 +58,7 @@ observation_entries!(buffers);
 
 impl Buffers<'_> {
     /// Checks that every buffer has exactly `n` rows.
-    pub(super) fn check(&mut self, n: usize, layout: &Layout) -> Result<(), VectorError> {
+    pub(super) fn check(&mut self, n: usize, layout: &RowLayout) -> Result<(), VectorError> {
         fn length<T>(buffer: &Option<&mut [T]>) -> Option<usize> {
             buffer.as_ref().map(|b| b.len())
         }

@@ -3,8 +3,8 @@
 //! An environment moves to a thread and back by value. An empty slot is in flight, so no call can reach it meanwhile, and no lock is held
 //! while it steps.
 
-use super::slot::{Order, Slot};
-use super::{Batch, Buffers, Failure, Seeds, VectorEnv, VectorError, of};
+use super::slot::{Command, Slot};
+use super::{Buffers, EnvFailure, Seeds, VectorEnv, VectorError, VectorStep, of};
 use crate::env::draw_eyes;
 use crate::spaces::ActionNoise;
 
@@ -13,7 +13,7 @@ impl VectorEnv {
     ///
     /// # Errors
     /// Environments in flight; a list of seeds of another length; a scene that diverges immediately, after all have been reset.
-    pub fn reset<'s>(&mut self, seeds: impl Into<Seeds<'s>>) -> Result<Batch<'_>, VectorError> {
+    pub fn reset<'s>(&mut self, seeds: impl Into<Seeds<'s>>) -> Result<VectorStep<'_>, VectorError> {
         self.reset_some(None, seeds.into())?;
         Ok(self.batch())
     }
@@ -22,7 +22,11 @@ impl VectorEnv {
     ///
     /// # Errors
     /// As [`VectorEnv::reset`]; a mask of another length.
-    pub fn reset_where<'s>(&mut self, mask: &[bool], seeds: impl Into<Seeds<'s>>) -> Result<Batch<'_>, VectorError> {
+    pub fn reset_where<'s>(
+        &mut self,
+        mask: &[bool],
+        seeds: impl Into<Seeds<'s>>,
+    ) -> Result<VectorStep<'_>, VectorError> {
         self.reset_some(Some(mask), seeds.into())?;
         Ok(self.batch())
     }
@@ -66,7 +70,7 @@ impl VectorEnv {
         let slots = self.slots.iter_mut().enumerate().filter(|(env, _)| marked(*env));
         let slots = slots.filter_map(|(env, place)| {
             let mut slot = place.take()?;
-            slot.order = Order::Reset(seeds.of(env));
+            slot.order = Command::Reset(seeds.of(env));
             Some(slot)
         });
         // the caller has nothing to do until all are back, so it runs jobs as well
@@ -80,7 +84,7 @@ impl VectorEnv {
         if self.failures.is_empty() {
             Ok(())
         } else {
-            let Failure { env, error } = self.failures.remove(0);
+            let EnvFailure { env, error } = self.failures.remove(0);
             Err(of(env)(error))
         }
     }
@@ -90,8 +94,8 @@ impl VectorEnv {
     /// # Errors
     /// Actions of wrong shape or with numbers that are not finite, environments in flight or without a reset, which leave everything
     /// untouched; an environment that panicked, after all have been stepped. An environment that diverges is not an error but one of
-    /// [`Batch::failures`].
-    pub fn step(&mut self, actions: &[f32]) -> Result<Batch<'_>, VectorError> {
+    /// [`VectorStep::failures`].
+    pub fn step(&mut self, actions: &[f32]) -> Result<VectorStep<'_>, VectorError> {
         self.submit_all(actions)?;
         self.collect_into_rows()?;
         Ok(self.batch())
@@ -151,7 +155,7 @@ impl VectorEnv {
     ///
     /// # Errors
     /// More environments than are in flight, or none; an environment that panicked, which is then no longer in flight.
-    pub fn recv(&mut self, n: usize) -> Result<Batch<'_>, VectorError> {
+    pub fn recv(&mut self, n: usize) -> Result<VectorStep<'_>, VectorError> {
         // rows are written from slots, and `self` owns both
         let mut rows = std::mem::take(&mut self.rows);
         let received = self.receive(n, &mut rows.buffers());
@@ -268,7 +272,7 @@ impl VectorEnv {
         }
         for (row, action) in rows() {
             if let Some(slot) = &mut self.slots[env_of(row)] {
-                slot.order = Order::Step;
+                slot.order = Command::Step;
                 slot.action.clear();
                 slot.action.extend_from_slice(action);
             }
@@ -364,7 +368,7 @@ impl VectorEnv {
             }
         }
         if let Some(error) = slot.failure.take() {
-            self.failures.push(Failure { env, error });
+            self.failures.push(EnvFailure { env, error });
         }
     }
 }

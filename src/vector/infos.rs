@@ -1,7 +1,7 @@
 //! Information of all environments as arrays.
 
 use crate::env::{BehaviorInfo, Info, Outcome};
-use crate::vector::rows::Layout;
+use crate::vector::rows::RowLayout;
 
 /// Information of all environments, as arrays of rows. Lists in the order of first touch, and names, are in
 /// [`VectorEnv::env`](super::VectorEnv::env)`(i)?.info()`.
@@ -13,9 +13,9 @@ pub struct Infos<'a> {
     pub touches: Option<&'a [u8]>,
     /// Steps with a hand in view, (N, 4), in the order of [`EYE_HAND_PAIRS`](crate::env::EYE_HAND_PAIRS), for the behavior `hand_regard`.
     pub regards: Option<&'a [u64]>,
-    /// The same, counted as the API page describes it: [`Regards::page`](crate::env::Regards::page).
+    /// The same, counted as the API page describes it: [`RegardCounts::page`](crate::env::Regards::page).
     pub page_regards: Option<&'a [u64]>,
-    /// The same, counted as the starter kit computes it: [`Regards::kit`](crate::env::Regards::kit).
+    /// The same, counted as the starter kit computes it: [`RegardCounts::kit`](crate::env::Regards::kit).
     pub kit_regards: Option<&'a [u64]>,
     /// Age of the pictures of the eyes (N), s, with a [`vision_rate`](crate::Config::vision_rate).
     pub vision_age: Option<&'a [f64]>,
@@ -28,7 +28,7 @@ pub struct Infos<'a> {
 /// Information as arrays.
 #[derive(Debug)]
 pub(super) struct InfoRows {
-    layout: Layout,
+    layout: RowLayout,
     steps: Vec<u64>,
     touches: Vec<u8>,
     /// The counters by `compat`, the page's, and the kit's.
@@ -39,7 +39,7 @@ pub(super) struct InfoRows {
 }
 
 impl InfoRows {
-    pub fn new(n: usize, layout: Layout) -> Self {
+    pub fn new(n: usize, layout: RowLayout) -> Self {
         Self {
             layout,
             steps: vec![0; n],

@@ -1,8 +1,8 @@
 //! Pictures of environments that draw them on request.
 
 use super::exchange::panicked;
-use super::slot::Order;
-use super::{Batch, Buffers, VectorEnv, VectorError, of};
+use super::slot::Command;
+use super::{Buffers, VectorEnv, VectorError, VectorStep, of};
 use crate::env::draw_eyes;
 
 impl VectorEnv {
@@ -25,7 +25,7 @@ impl VectorEnv {
     ///
     /// # Errors
     /// An environment of the batch that has been sent again, or that panicked; errors of the renderer.
-    pub fn look(&mut self) -> Result<Batch<'_>, VectorError> {
+    pub fn look(&mut self) -> Result<VectorStep<'_>, VectorError> {
         let mut rows = std::mem::take(&mut self.rows);
         let looked = self.look_for(&mut rows.buffers());
         self.rows = rows;
@@ -90,7 +90,7 @@ impl VectorEnv {
         let slots = &mut self.slots;
         let waiting = self.ids.iter().filter_map(|&env| {
             let mut slot = slots[env].take()?;
-            slot.order = Order::Look;
+            slot.order = Command::Look;
             Some(slot)
         });
         self.pool.submit(waiting, true);

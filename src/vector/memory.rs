@@ -2,7 +2,7 @@
 
 use crate::config::VisionOutput;
 use crate::env::Env;
-use crate::vector::rows::Layout;
+use crate::vector::rows::RowLayout;
 use crate::vector::{AutoresetMode, VectorError, VectorOptions, options};
 
 /// The limit on systems that do not report their memory.
@@ -14,19 +14,19 @@ const DEFAULT_LIMIT: u64 = if cfg!(target_pointer_width = "32") {
 
 /// Memory of environments, bytes.
 #[derive(Clone, Copy)]
-pub(super) struct Estimate {
+pub(super) struct MemoryEstimate {
     /// Of a further environment.
     pub each: u64,
     /// Of what threads draw with, however many environments there are.
     pub drawing: u64,
 }
 
-impl Estimate {
+impl MemoryEstimate {
     /// Estimates from an environment that is built.
     ///
     /// Sizes are linear in the number of each kind of element. The factors were measured; a test compares the sum with the
     /// allocator.
-    pub fn of(env: &Env, layout: &Layout, options: &VectorOptions, envs: usize) -> Self {
+    pub fn of(env: &Env, layout: &RowLayout, options: &VectorOptions, envs: usize) -> Self {
         let threads = options::threads(options.threads, envs).0;
         Self {
             each: each(env, layout, options),
@@ -65,7 +65,7 @@ fn drawing(env: &Env) -> usize {
 }
 
 /// Returns the memory of a further environment.
-fn each(env: &Env, layout: &Layout, options: &VectorOptions) -> u64 {
+fn each(env: &Env, layout: &RowLayout, options: &VectorOptions) -> u64 {
     let model = env.model();
     // the array of the vector and the vector of the sense; with the ends of episodes, another of each
     let copies = if options.autoreset == AutoresetMode::SameStep {

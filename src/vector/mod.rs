@@ -32,7 +32,7 @@ mod seeds;
 mod single;
 mod slot;
 
-pub use batch::{Batch, Failure, Finals};
+pub use batch::{EnvFailure, EpisodeEndRows, VectorStep};
 pub use buffers::Buffers;
 pub use error::VectorError;
 pub use infos::Infos;
@@ -44,8 +44,8 @@ use crate::env::{Blueprint, Env, EnvError};
 use crate::spaces::{BoxSpace, ObservationSpace};
 use crate::threads::ThreadPool;
 use infos::InfoRows;
-use memory::Estimate;
-use rows::{Layout, Rows};
+use memory::MemoryEstimate;
+use rows::{RowLayout, VectorRows};
 use slot::Slot;
 
 /// Many environments, stepped together or in the order in which they finish.
@@ -86,20 +86,20 @@ pub struct VectorEnv {
     lazy: bool,
     /// Whether the rows are still without pictures.
     unseen: bool,
-    layout: Layout,
+    layout: RowLayout,
     action_space: BoxSpace,
     observation_space: Vec<ObservationSpace>,
     ids: Vec<usize>,
-    rows: Rows,
+    rows: VectorRows,
     infos: InfoRows,
-    finals: Option<Ends>,
-    failures: Vec<Failure>,
+    finals: Option<EpisodeEnds>,
+    failures: Vec<EnvFailure>,
 }
 
 /// The ends of episodes, with [`AutoresetMode::SameStep`].
-struct Ends {
+struct EpisodeEnds {
     ended: Vec<bool>,
-    rows: Rows,
+    rows: VectorRows,
     infos: InfoRows,
 }
 
@@ -140,7 +140,7 @@ impl VectorEnv {
             return Err(VectorError::NoEnvironments);
         }
         let first = make(blueprint).map_err(of(0))?;
-        Estimate::of(&first, &Layout::new([&first]), &options, n).check(n, options.max_memory)
+        MemoryEstimate::of(&first, &RowLayout::new([&first]), &options, n).check(n, options.max_memory)
     }
 
     fn build<'b>(
@@ -154,11 +154,11 @@ impl VectorEnv {
         let make = |env: usize| make(blueprint(env)).map_err(of(env));
         let first = make(0)?;
         let mode = options.autoreset;
-        Estimate::of(&first, &Layout::new([&first]), &options, n).check(n, options.max_memory)?;
+        MemoryEstimate::of(&first, &RowLayout::new([&first]), &options, n).check(n, options.max_memory)?;
         let envs = alike(first, n, make)?;
         let deferred = envs.iter().all(on_gpu);
         let lazy = envs.iter().any(|env| env.senses().vision_is_lazy());
-        let layout = Layout::new(&envs);
+        let layout = RowLayout::new(&envs);
         let (action_space, observation_space) = (envs[0].action_space().clone(), envs[0].observation_space());
         let slots = envs.into_iter().enumerate().map(|(index, mut env)| {
             env.senses_mut().defer_vision(deferred);
@@ -181,11 +181,11 @@ impl VectorEnv {
             action_space,
             observation_space,
             ids: (0..n).collect(),
-            rows: Rows::new(n, layout),
+            rows: VectorRows::new(n, layout),
             infos: InfoRows::new(n, layout),
-            finals: (mode == AutoresetMode::SameStep).then(|| Ends {
+            finals: (mode == AutoresetMode::SameStep).then(|| EpisodeEnds {
                 ended: vec![false; n],
-                rows: Rows::new(n, layout),
+                rows: VectorRows::new(n, layout),
                 infos: InfoRows::new(n, layout),
             }),
             failures: Vec::with_capacity(n),
@@ -223,9 +223,9 @@ impl VectorEnv {
     }
 
     /// Returns the rows of the last step, reset or [`VectorEnv::recv`].
-    pub fn batch(&self) -> Batch<'_> {
+    pub fn batch(&self) -> VectorStep<'_> {
         let n = self.ids.len();
-        Batch {
+        VectorStep {
             ids: &self.ids,
             observation: self.rows.observation(n, !self.unseen),
             rewards: &self.rows.rewards()[..n],
@@ -243,9 +243,9 @@ impl VectorEnv {
     }
 
     /// Returns the ends of episodes in the last step, with [`AutoresetMode::SameStep`].
-    pub fn finals(&self) -> Option<Finals<'_>> {
+    pub fn finals(&self) -> Option<EpisodeEndRows<'_>> {
         let n = self.ids.len();
-        self.finals.as_ref().map(|ends| Finals {
+        self.finals.as_ref().map(|ends| EpisodeEndRows {
             ended: &ends.ended[..n],
             observation: ends.rows.observation(n, true),
             infos: ends.infos.infos(n),
@@ -253,7 +253,7 @@ impl VectorEnv {
     }
 
     /// Returns the environments that could not continue in the last step.
-    pub fn failures(&self) -> &[Failure] {
+    pub fn failures(&self) -> &[EnvFailure] {
         &self.failures
     }
 }
@@ -302,10 +302,10 @@ fn of(env: usize) -> impl FnOnce(EnvError) -> VectorError {
 }
 
 /// A difference between the spaces of an environment and those of others: the space, theirs, its own.
-type Difference = (String, String, String);
+type SpaceDifference = (String, String, String);
 
 /// Returns how an environment differs from those with which it is to share arrays.
-fn difference(a: &BoxSpace, spaces: &[ObservationSpace], env: &Env) -> Option<Difference> {
+fn difference(a: &BoxSpace, spaces: &[ObservationSpace], env: &Env) -> Option<SpaceDifference> {
     let b = env.action_space();
     if a.len() != b.len() {
         let shapes = [a, b].map(|space| format!("[{}]", space.len()));

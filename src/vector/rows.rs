@@ -8,7 +8,7 @@ use crate::vector::Buffers;
 
 /// Lengths of the rows.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(super) struct Layout {
+pub(super) struct RowLayout {
     pub action: usize,
     /// Length of each entry of the observation, in the order of [`ObservationEntry::ALL`]; `None` for missing entries.
     pub entries: [Option<usize>; ObservationEntry::ALL.len()],
@@ -24,7 +24,7 @@ pub(super) struct Layout {
     pub terms: Option<usize>,
 }
 
-impl Layout {
+impl RowLayout {
     /// Computes the layout of environments whose spaces are the same.
     pub fn new<'e>(envs: impl IntoIterator<Item = &'e Env>) -> Self {
         let mut layout = Self::default();
@@ -63,19 +63,19 @@ impl Layout {
 
 /// The vector's own arrays.
 #[derive(Debug, Default)]
-pub(super) struct Rows {
+pub(super) struct VectorRows {
     /// The arrays of the entries, in the order of [`ObservationEntry::ALL`]; `None` for missing entries.
     entries: Vec<Option<Array>>,
     /// Lengths of their rows.
-    layout: Layout,
+    layout: RowLayout,
     touched: Vec<Vec<u32>>,
     rewards: Vec<f64>,
     terminated: Vec<bool>,
     truncated: Vec<bool>,
 }
 
-impl Rows {
-    pub fn new(n: usize, layout: Layout) -> Self {
+impl VectorRows {
+    pub fn new(n: usize, layout: RowLayout) -> Self {
         let entries = ObservationEntry::ALL.iter().zip(layout.entries);
         Self {
             entries: entries

@@ -3,14 +3,14 @@
 use std::any::Any;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
-use crate::env::{BehaviorInfo, Env, EnvError, Info, Observation, PerHand, Work, draw_eyes};
+use crate::env::{BehaviorInfo, Env, EnvError, Info, Observation, PerHand, ScratchUse, draw_eyes};
 use crate::threads::Job;
-use crate::vector::rows::{Layout, Rows};
+use crate::vector::rows::{RowLayout, VectorRows};
 use crate::vector::{AutoresetMode, make};
 
 /// The next command of an environment.
 #[derive(Clone, Copy, Debug)]
-pub(super) enum Order {
+pub(super) enum Command {
     /// Apply [`Slot::action`], or start the next episode if the mode says so.
     Step,
     /// Start an episode, with or without a seed.
@@ -23,7 +23,7 @@ pub(super) enum Order {
 pub(super) struct Slot {
     pub index: usize,
     pub env: Env,
-    pub order: Order,
+    pub order: Command,
     pub action: Vec<f32>,
     pub mode: AutoresetMode,
     /// The number of the last call of `send` that named the environment.
@@ -35,7 +35,7 @@ pub(super) struct Slot {
     pub truncated: bool,
     /// Whether [`Slot::last`] belongs to an episode that ended in the last step.
     pub ended: bool,
-    pub last: Option<Last>,
+    pub last: Option<LastEpisode>,
     /// The error of the last step or reset.
     pub failure: Option<EnvError>,
     /// The message of the panic that broke the environment.
@@ -53,11 +53,11 @@ impl Job for Slot {
 impl Slot {
     pub fn new(index: usize, env: Env, mode: AutoresetMode) -> Self {
         let action = Vec::with_capacity(env.action_space().len());
-        let last = (mode == AutoresetMode::SameStep).then(|| Last::new(&env));
+        let last = (mode == AutoresetMode::SameStep).then(|| LastEpisode::new(&env));
         Self {
             index,
             env,
-            order: Order::Reset(None),
+            order: Command::Reset(None),
             action,
             mode,
             named: 0,
@@ -84,28 +84,28 @@ impl Slot {
     }
 
     fn perform(&mut self) {
-        if !matches!(self.order, Order::Look) {
+        if !matches!(self.order, Command::Look) {
             // reading leaves the results of the last step unchanged
             (self.reward, self.terminated, self.truncated) = (0.0, false, false);
             (self.ended, self.failure) = (false, None);
         }
         match self.order {
-            Order::Reset(seed) => {
+            Command::Reset(seed) => {
                 if let Err(e) = self.revive() {
                     self.failure = Some(e);
                 } else {
                     self.reset(seed);
                 }
             }
-            Order::Step if self.mode != AutoresetMode::Disabled && self.over() => self.reset(None),
-            Order::Step => self.step(),
-            Order::Look => self.failure = self.env.look().err(),
+            Command::Step if self.mode != AutoresetMode::Disabled && self.over() => self.reset(None),
+            Command::Step => self.step(),
+            Command::Look => self.failure = self.env.look().err(),
         }
     }
 
     /// Steps the environment in the memory of the thread, which the environment before it has left in the caches.
     fn step(&mut self) {
-        let mut env = self.env.work(Work::Step);
+        let mut env = self.env.work(ScratchUse::Step);
         match env.step(&self.action) {
             Ok(step) => (self.reward, self.terminated, self.truncated) = (step.reward, step.terminated, step.truncated),
             Err(e) => {
@@ -130,7 +130,7 @@ impl Slot {
     fn reset(&mut self, seed: Option<u64>) {
         self.started = true;
         let copy = self.env.before_reset();
-        let mut env = self.env.work(Work::Reset);
+        let mut env = self.env.work(ScratchUse::Reset);
         let reset = env.reset(seed).map(drop).and_then(|()| env.check_reset(copy, seed));
         if let Err(e) = reset {
             self.failure.get_or_insert(e);
@@ -157,18 +157,18 @@ fn draw_last(env: &mut Env) -> Result<(), EnvError> {
 }
 
 /// The end of an episode.
-pub(super) struct Last {
+pub(super) struct LastEpisode {
     pub info: Info,
     /// The observation, in a row.
-    rows: Rows,
+    rows: VectorRows,
     pub terms: Vec<f64>,
 }
 
-impl Last {
+impl LastEpisode {
     fn new(env: &Env) -> Self {
         let mut last = Self {
             info: Info::default(),
-            rows: Rows::new(1, Layout::new([env])),
+            rows: VectorRows::new(1, RowLayout::new([env])),
             terms: vec![0.0; env.goal().terms.len()],
         };
         last.keep(env);

@@ -7,11 +7,11 @@ use std::sync::Arc;
 
 use crate::allocations;
 use crate::common::*;
-use babybench::actuation::{Actuation, ActuationError, Muscle, MuscleParams, Positional, build};
+use babybench::actuation::{Actuation, ActuationError, MuscleModel, MuscleParams, PositionalModel, build};
 use babybench::config::{ActuationModel, Behavior, Compat, Part, Scene};
 use babybench::mimo::{LockError, build_model, embedded};
 use babybench::physics::{Engine, SoftEngine, SoftOptions, State};
-use babybench::sensors::Component;
+use babybench::sensors::ProprioceptionComponent;
 use babybench::{Config, Env, EnvError, Model};
 
 fn config(actuation_model: ActuationModel, behavior: Behavior, scene: Scene, compat: Compat) -> Config {
@@ -109,7 +109,11 @@ fn muscles_are_activated_in_every_physics_step() {
         env.step(&[1.0; 88]).expect("no divergence");
         let expect = if frame_skip == 3 { 0.875 } else { 0.5 };
         assert!(env.state().act.iter().all(|a| *a == expect));
-        let range = env.senses().proprioception().range(Component::Actuation).expect("on");
+        let range = env
+            .senses()
+            .proprioception()
+            .range(ProprioceptionComponent::Actuation)
+            .expect("on");
         let seen = &env.observation().proprioception[range];
         assert_eq!((seen.len(), seen[0], seen[87]), (176, expect, expect));
         // sum |a^2 F| / (2n sum F)
@@ -165,7 +169,11 @@ fn muscles_after_a_reset() {
         assert_eq!(max_abs(&s.ctrl), if compat == Compat::Reference { 0.0 } else { 1.0 });
         assert_eq!(max_abs(&s.qfrc_actuator) == 0.0, compat == Compat::Reference);
         let knee = actuator(env.model(), "act:right_knee");
-        let range = env.senses().proprioception().range(Component::Actuation).expect("on");
+        let range = env
+            .senses()
+            .proprioception()
+            .range(ProprioceptionComponent::Actuation)
+            .expect("on");
         let force = env.observation().proprioception[range.start + 88 + knee];
         let p = MuscleParams::of_actuator(env.model(), knee).expect("a muscle");
         let q = env.model().jnt_qposadr[env.model().actuator_trnid[knee]];
@@ -196,7 +204,11 @@ fn servos_hold_their_target_for_all_substeps_except_in_the_reference() {
             f64::from(-146f64.to_radians() as f32)
         };
         assert_eq!(env.state().ctrl[elbow], expect, "{compat} {frame_skip}");
-        let range = env.senses().proprioception().range(Component::Actuation).expect("on");
+        let range = env
+            .senses()
+            .proprioception()
+            .range(ProprioceptionComponent::Actuation)
+            .expect("on");
         assert_eq!(env.observation().proprioception[range][elbow], expect);
         assert_eq!(env.actuation().cost(env.model(), env.state()), 0.0);
     }
@@ -219,7 +231,11 @@ fn servos_of_held_joints_stay_at_0() {
     env.reset(Some(0)).expect("no divergence");
     let action: Vec<f32> = env.action_space().high().to_vec();
     env.step(&action).expect("no divergence");
-    let range = env.senses().proprioception().range(Component::Actuation).expect("on");
+    let range = env
+        .senses()
+        .proprioception()
+        .range(ProprioceptionComponent::Actuation)
+        .expect("on");
     let seen: Vec<f32> = env.observation().proprioception[range]
         .iter()
         .map(|v| *v as f32)
@@ -260,7 +276,7 @@ fn illegal_muscles_are_named() {
     let base = config(ActuationModel::Muscle, Behavior::None, Scene::Base, Compat::Api);
     let good = build_model(&base, &embedded()).expect("the assets load");
     let elbow = actuator(&good, "act:right_elbow");
-    assert!(Muscle::new(&good, Compat::Api).is_ok());
+    assert!(MuscleModel::new(&good, Compat::Api).is_ok());
     let mut bad = Vec::new();
     for (k, value) in [(0, 0.0), (0, -1.0), (1, -1.0)] {
         let mut user = good.actuator_user[elbow].clone();
@@ -282,12 +298,12 @@ fn illegal_muscles_are_named() {
         assert!(error.to_string().contains("act:right_elbow"));
         println!("{error}");
     }
-    let kind = Positional::new(&good, Compat::Api).expect_err("motors");
+    let kind = PositionalModel::new(&good, Compat::Api).expect_err("motors");
     assert!(matches!(kind, ActuationError::Kind { .. }), "{kind}");
     let positional = config(ActuationModel::Positional, Behavior::None, Scene::Base, Compat::Api);
     let servos = build_model(&positional, &embedded()).expect("the assets load");
     assert!(matches!(
-        Muscle::new(&servos, Compat::Api),
+        MuscleModel::new(&servos, Compat::Api),
         Err(ActuationError::Kind { .. })
     ));
 }
@@ -359,12 +375,12 @@ fn every_number_of_proprioception_has_a_name() {
                     names.insert(format!("{:?} {}", e.component, e.name)),
                     "{e:?} stands twice"
                 );
-                if e.component != Component::Actuation {
+                if e.component != ProprioceptionComponent::Actuation {
                     assert_eq!(p.find(model, e.component, &e.name), Some(e.range.clone()));
                 }
             }
             assert_eq!(end, p.len());
-            assert_eq!(p.find(model, Component::Angles, "robot:tail"), None);
+            assert_eq!(p.find(model, ProprioceptionComponent::Angles, "robot:tail"), None);
             assert_eq!(env.actuation().action_names(model).len(), env.action_space().len());
         }
     }

@@ -28,7 +28,7 @@ fn error(fragments: &[&str]) -> String {
 
 #[test]
 fn bodies_are_added_to_every_scene_and_mimo_stays_as_he_is() {
-    for scene in Scene::ALL.iter().chain(Scene::OWN) {
+    for scene in Scene::LIBRARY {
         let config = SceneBuilder::new(scene.clone())
             .body("a new ball", [0.0, 0.7, 1.0], BALL)
             .with(RED)

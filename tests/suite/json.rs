@@ -7,8 +7,10 @@ use std::time::Duration;
 
 use crate::common::*;
 use babybench::config::{Behavior, Compat, Scene};
-use babybench::env::{BehaviorInfo, Detailed, EYE_HAND_PAIRS, Info, InfoDetails, PerEyeAndHand, PerHand, SnapshotInfo};
-use babybench::eval::{Plan, Score, ScoreParts, Touchables, run_episodes};
+use babybench::env::{
+    BehaviorInfo, EYE_HAND_PAIRS, Info, InfoDetails, InfoWithDetails, PerEyeAndHand, PerHand, SnapshotInfo,
+};
+use babybench::eval::{Plan, Score, ScoreParts, TouchableGeoms, run_episodes};
 use babybench::policy::PolicySource;
 use babybench::runs::{Recording, replay};
 use babybench::spaces::NumpyRng;
@@ -155,7 +157,7 @@ fn information_is_json_whatever_it_holds() {
             ],
         );
         let only = serde_json::to_value(&info.details).expect("JSON");
-        let beside = Detailed {
+        let beside = InfoWithDetails {
             info: &Info::default(),
             details: Some(&info.details),
         };
@@ -171,7 +173,7 @@ fn scores_are_json_whatever_they_hold() {
     let hard = "t\u{301}&quot;\\\u{2028}\u{1f476}oes";
     let model = edited(&free(Behavior::SelfTouch, Scene::Base), |xml| xml.replace("toes", hard));
     assert!(model.body("left_t\u{301}\"\\\u{2028}\u{1f476}oes").is_some());
-    let skin = Touchables::new(&model).expect("MIMo");
+    let skin = TouchableGeoms::new(&model).expect("MIMo");
     for _ in 0..200 {
         let ngeom = model.ngeom();
         let parts = match source.below(2) {

@@ -7,7 +7,7 @@ use crate::common::*;
 use babybench::config::{Behavior, Compat, Config, Scene};
 use babybench::env::BlueprintOptions;
 use babybench::env::{BehaviorInfo, Info, InfoDetails, PartNames, Task};
-use babybench::eval::{Score, ScoreError, Touchables, eval_logs};
+use babybench::eval::{Score, ScoreError, TouchableGeoms, eval_logs};
 use babybench::formats::pickle::{self, Value};
 use babybench::runs::logs::{evaluation_path, read_records_with, training_path};
 use babybench::runs::{EvaluationLog, LogError, RunEnv, TrainingLog, for_evaluation, read_training, start_training};
@@ -216,7 +216,7 @@ fn scores_are_those_of_the_specification() {
 fn each_hand_can_reach_31_parts() {
     for scene in [Scene::Base, Scene::Crib, Scene::Cubes] {
         let blueprint = Blueprint::new(free(Behavior::SelfTouch, scene)).expect("a scene");
-        let skin = Touchables::new(blueprint.model()).expect("MIMo");
+        let skin = TouchableGeoms::new(blueprint.model()).expect("MIMo");
         assert_eq!([0, 1].map(|hand| skin.reachable(hand).len()), [31, 31]);
         assert_eq!(&*skin.name(13), "right_hand 1/2");
         assert_eq!(&*skin.name(3), "hip");

@@ -4,7 +4,7 @@ use crate::common::*;
 use babybench::Limits;
 use babybench::config::{ActuationModel, Behavior, Config, Scene};
 use babybench::policy::{NoisePolicy, Policy};
-use babybench::runs::{Motion, MotionError, Playing, Record, RecordOptions, Recorder, play_motion};
+use babybench::runs::{Motion, MotionError, MotionMode, Record, RecordOptions, Recorder, play_motion};
 use babybench::spaces::Noise;
 use babybench::{Blueprint, Env};
 
@@ -57,30 +57,36 @@ fn a_motion_out_of_a_run_gives_its_proprioceptive_angles() {
     env.reset(Some(9)).expect("no divergence");
     let n = env.senses().proprioception().joints().len();
     let (mut step, mut touched) = (0, 0);
-    let played = play_motion(&mut env, &motion, Playing::Kinematic, Some((&mut recorder, 0)), |env| {
-        let found = env.observation().proprioception;
-        for (k, (found, expected)) in found[..n].iter().zip(&felt[step][..n]).enumerate() {
-            assert!(
-                (found - expected).abs() < 1e-9,
-                "step {step}, angle {k}: {found}, {expected}"
+    let played = play_motion(
+        &mut env,
+        &motion,
+        MotionMode::Kinematic,
+        Some((&mut recorder, 0)),
+        |env| {
+            let found = env.observation().proprioception;
+            for (k, (found, expected)) in found[..n].iter().zip(&felt[step][..n]).enumerate() {
+                assert!(
+                    (found - expected).abs() < 1e-9,
+                    "step {step}, angle {k}: {found}, {expected}"
+                );
+            }
+            let same = env
+                .state()
+                .qpos
+                .iter()
+                .zip(&qpos[step])
+                .all(|(a, b)| (a - b).abs() < 1e-9);
+            assert!(same, "step {step}: {:?}", &env.state().qpos[..7]);
+            touched += usize::from(
+                env.observation()
+                    .touch
+                    .is_some_and(|touch| touch.iter().any(|v| *v != 0.0)),
             );
-        }
-        let same = env
-            .state()
-            .qpos
-            .iter()
-            .zip(&qpos[step])
-            .all(|(a, b)| (a - b).abs() < 1e-9);
-        assert!(same, "step {step}: {:?}", &env.state().qpos[..7]);
-        touched += usize::from(
-            env.observation()
-                .touch
-                .is_some_and(|touch| touch.iter().any(|v| *v != 0.0)),
-        );
-        step += 1;
-        assert_eq!(env.info().steps, step as u64);
-        true
-    });
+            step += 1;
+            assert_eq!(env.info().steps, step as u64);
+            true
+        },
+    );
     let played = played.expect("a motion");
     assert_eq!((played.steps, played.error, played.worst), (STEPS as u64, 0.0, None));
     assert!(touched > STEPS / 2, "the crib is felt in {touched} steps");
@@ -114,7 +120,7 @@ fn velocities_are_those_that_lead_from_pose_to_pose() {
     let joint = model.joint("robot:right_elbow").expect("an elbow");
     let (qpos, dof) = (model.jnt_qposadr[joint], model.jnt_dofadr[joint]);
     let mut step = 0;
-    let played = play_motion(&mut env, &motion, Playing::Kinematic, None, |env| {
+    let played = play_motion(&mut env, &motion, MotionMode::Kinematic, None, |env| {
         let state = env.state();
         let at = f64::from(step) * dt;
         assert!((state.qpos[qpos] - (2.0 * at - 1.0)).abs() < 1e-9, "step {step}");
@@ -139,7 +145,13 @@ fn motors_and_servos_follow_a_motion_and_the_record_is_repeated() {
         let motion = Motion::new(names, 100.0, (0..200).map(wave).collect(), None).expect("a motion");
         let folder = Folder::new("motion_tracking");
         let mut recorder = Recorder::create(folder.path(), &env, RecordOptions::default()).expect("a folder");
-        let played = play_motion(&mut env, &motion, Playing::Tracking, Some((&mut recorder, 3)), |_| true);
+        let played = play_motion(
+            &mut env,
+            &motion,
+            MotionMode::Tracking,
+            Some((&mut recorder, 3)),
+            |_| true,
+        );
         let played = played.expect("a motion");
         assert!(played.error > 0.0 && played.error < 0.25, "{actuation}: {played:?}");
         assert_eq!(played.worst.map(|(name, _)| name).as_deref(), Some("robot:right_elbow"));
@@ -156,7 +168,7 @@ fn motors_and_servos_follow_a_motion_and_the_record_is_repeated() {
     let mut env = crib(ActuationModel::Muscle).env().expect("an environment");
     env.reset(Some(1)).expect("no divergence");
     let motion = Motion::new(vec!["robot:left_elbow".to_string()], 10.0, vec![0.0], None).expect("a motion");
-    let refused = play_motion(&mut env, &motion, Playing::Tracking, None, |_| true).expect_err("muscles");
+    let refused = play_motion(&mut env, &motion, MotionMode::Tracking, None, |_| true).expect_err("muscles");
     assert!(matches!(refused, MotionError::Muscles), "{refused}");
 }
 
@@ -260,13 +272,13 @@ fn motions_keep_to_limits_and_to_mimos_joints() {
     let mut env = crib(ActuationModel::SpringDamper).env().expect("an environment");
     env.reset(None).expect("no divergence");
     let other = Motion::new(vec!["robot:right_elbo".to_string()], 1.0, vec![0.0], None).expect("a motion");
-    let error = play_motion(&mut env, &other, Playing::Kinematic, None, |_| true).expect_err("no joint");
+    let error = play_motion(&mut env, &other, MotionMode::Kinematic, None, |_| true).expect_err("no joint");
     assert!(
         error.to_string().contains("did you mean \"robot:right_elbow\"?"),
         "{error}"
     );
     let far = one(1.0, vec![3.0]).expect("a motion");
-    let played = play_motion(&mut env, &far, Playing::Kinematic, None, |_| true).expect("a pose");
+    let played = play_motion(&mut env, &far, MotionMode::Kinematic, None, |_| true).expect("a pose");
     assert_eq!(played.beyond_limits, ["robot:right_elbow"]);
     // whoever sits has no root to be moved
     let root = Some(vec![([0.0, 0.0, 0.5], [1.0, 0.0, 0.0, 0.0])]);
@@ -281,7 +293,7 @@ fn motions_keep_to_limits_and_to_mimos_joints() {
         let mut env = blueprint(config).env().expect("an environment");
         env.reset(None).expect("no divergence");
         let free = env.model().jnt_type[0] == babybench::model::JointType::Free;
-        match play_motion(&mut env, &rooted, Playing::Kinematic, None, |_| true) {
+        match play_motion(&mut env, &rooted, MotionMode::Kinematic, None, |_| true) {
             Ok(played) => assert!(free && played.steps == 1, "{behavior}"),
             Err(error) => assert!(!free && matches!(error, MotionError::Root), "{behavior}: {error}"),
         }

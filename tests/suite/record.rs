@@ -116,7 +116,10 @@ fn hands_are_counted_by_page_by_kit_and_by_pixels() {
     other.restore(&snapshot).expect("a snapshot");
     assert_eq!(other.info().details.regards, Some(details));
     env.reset(None).expect("no divergence");
-    assert_eq!(env.info().details.regards, Some(babybench::env::Regards::default()));
+    assert_eq!(
+        env.info().details.regards,
+        Some(babybench::env::RegardCounts::default())
+    );
 }
 
 #[test]

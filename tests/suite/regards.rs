@@ -2,7 +2,7 @@
 
 use crate::common::*;
 use babybench::config::{Behavior, Compat, Config, Scene};
-use babybench::env::{BehaviorInfo, EYE_HAND_PAIRS, PerEyeAndHand, Regards};
+use babybench::env::{BehaviorInfo, EYE_HAND_PAIRS, PerEyeAndHand, RegardCounts};
 use babybench::runs::logs::training_path;
 use babybench::runs::{TrainingLog, make_env, read_training};
 use babybench::{AutoresetMode, Blueprint, VectorEnv, VectorOptions};
@@ -45,7 +45,7 @@ fn training_logs_have_both_counters_under_both_modes() {
         }
         env.finish_training().expect("the log can be written");
         let found: Vec<_> = lines(&folder);
-        let of_compat = |both: &Regards| match compat {
+        let of_compat = |both: &RegardCounts| match compat {
             Compat::Api => both.page,
             Compat::Reference => both.kit,
         };
@@ -65,7 +65,7 @@ fn training_logs_have_both_counters_under_both_modes() {
 fn resumed_logs_keep_both_counters() {
     let folder = Folder::new("regards_resumed");
     let config = config(&folder, Compat::Api);
-    let both = |k: u64| Regards {
+    let both = |k: u64| RegardCounts {
         page: [k, 0, 1, 2].into(),
         kit: [3, k, 4, 5].into(),
     };

@@ -259,7 +259,7 @@ fn every_output() -> VisionOutputs {
 
 #[test]
 fn images_of_one_pass_are_those_drawn_alone() {
-    for scene in Scene::ALL {
+    for scene in Scene::BABYBENCH {
         let e = env(scene.clone());
         let poses = Poses::from(e.state());
         let plain = e.blueprint().scenery().unwrap();

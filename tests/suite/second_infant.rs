@@ -42,7 +42,7 @@ fn a_second_policy_moves_the_second_infant() {
         let mut env = two(&plain(behavior));
         let alone = env_alone(behavior);
         assert_eq!(env.action_space(), alone.action_space());
-        let other = env.others().pop().expect("another one");
+        let other = env.second_infant().expect("another one");
         assert_eq!(other.action_space().len(), alone.action_space().len());
         assert_eq!(other.joints().len(), alone.senses().proprioception().joints().len());
         env.reset(Some(0)).expect("no divergence");
@@ -65,7 +65,7 @@ fn a_second_policy_moves_the_second_infant() {
             "the learner rests: {rest:?} {moved:?}"
         );
         assert!(moved[1] < rest[1] - 0.2, "the other bends his arm: {rest:?} {moved:?}");
-        other.observe(env.model(), env.state(), &mut seen);
+        other.observe(env.state(), &mut seen);
         assert_eq!(seen.len(), other.observation_len());
         assert!(seen.contains(&moved[1]));
         // the learner's controls are his own
@@ -151,19 +151,20 @@ fn either_of_them_learns_at_an_age_of_his_own() {
 #[test]
 fn what_cannot_be_is_said() {
     let original = two(&plain(Behavior::SelfTouch));
-    assert_eq!(original.others().len(), 1);
-    assert!(env_alone(Behavior::SelfTouch).others().is_empty());
+    assert!(original.second_infant().is_some());
+    assert!(env_alone(Behavior::SelfTouch).second_infant().is_none());
     let muscles = Config {
         actuation_model: ActuationModel::Muscle,
         ..plain(Behavior::SelfTouch)
     };
-    assert!(two(&muscles).others().is_empty());
+    assert!(two(&muscles).second_infant().is_none());
     let servos = Config {
         actuation_model: ActuationModel::Positional,
         ..plain(Behavior::SelfTouch)
     };
     let env = two(&servos);
-    assert_eq!(env.others()[0].action_space().low(), env.action_space().low());
+    let second = env.second_infant().expect("another one");
+    assert_eq!(second.action_space().low(), env.action_space().low());
     for text in ["scene: crib\nlearner: other", "scene: crib\nother_age: 3"] {
         let error = Config::from_yaml(text, "c.yml").expect_err("refused").to_string();
         assert!(error.contains("c.yml:2:") && error.contains("second infant"), "{error}");

@@ -5,7 +5,7 @@ mod refused;
 use crate::common::*;
 use babybench::config::{ActuationModel, Behavior, Compat, FacialExpression, Part, Scene};
 use babybench::env::{Snapshot, SnapshotError, Viewer};
-use babybench::sensors::Component;
+use babybench::sensors::ProprioceptionComponent;
 use babybench::{Config, Env, EnvError, VectorEnv, VectorOptions};
 
 /// `n` random steps: everything that comes out of them, as text.
@@ -262,7 +262,11 @@ fn the_observation_is_of_one_moment() {
         "an edit is not observed in part"
     );
     let qpos = env.state().qpos.clone();
-    let range = env.senses().proprioception().range(Component::Angles).expect("on");
+    let range = env
+        .senses()
+        .proprioception()
+        .range(ProprioceptionComponent::Angles)
+        .expect("on");
     let now = env.refresh().expect("no divergence").proprioception[range.start];
     assert_eq!(now, qpos[joint]);
     env.state_mut().qpos[joint] = f64::NAN;

@@ -11,7 +11,7 @@ use babybench::eval::{EpisodeError, Evaluation, EvaluationError, Observer, Plan,
 use babybench::formats::avi::DEFAULT_FPS;
 use babybench::policy::{DEFAULT_LIMIT, PolicySource};
 use babybench::runs::logs::training_path;
-use babybench::runs::{KeptScene, keep_scene};
+use babybench::runs::{SceneFileStatus, keep_scene};
 use clap::Args;
 
 use super::record::Recording;
@@ -150,12 +150,14 @@ impl Evaluate {
     fn keep_scene(&self, blueprint: &Blueprint) -> Result<(), Box<dyn Error>> {
         let dir = &blueprint.config().save_dir;
         match keep_scene(blueprint)? {
-            KeptScene::Written | KeptScene::Same => {}
-            KeptScene::Similar => note!(
+            SceneFileStatus::Written | SceneFileStatus::Same => {}
+            SceneFileStatus::Similar => note!(
                 "warning: the scene.xml in {dir} has the same bodies but different numbers: it comes from other \
                  assets, another actuation_model or another release"
             ),
-            KeptScene::Foreign(e) => note!("note: the scene.xml in {dir} cannot be loaded and is left unchanged: {e}"),
+            SceneFileStatus::Foreign(e) => {
+                note!("note: the scene.xml in {dir} cannot be loaded and is left unchanged: {e}")
+            }
         }
         Ok(())
     }

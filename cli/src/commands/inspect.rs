@@ -12,7 +12,7 @@ use babybench::model::{EqualityKind, TrnType};
 use babybench::physics::collision::PairTable;
 use babybench::report::skin::draw_skin;
 use babybench::runs::replay;
-use babybench::sensors::Component;
+use babybench::sensors::ProprioceptionComponent;
 use babybench::{Blueprint, Env, Model};
 use clap::Args;
 
@@ -243,11 +243,11 @@ fn write_observation(out: &mut impl Write, env: &Env) -> io::Result<()> {
     let proprioception = env.senses().proprioception();
     for (component, range) in proprioception.layout() {
         let what = match component {
-            Component::Angles => "rad, joints as above",
-            Component::Velocities => "rad/s, joints as above",
-            Component::Torques => "N m, three for each torque sensor",
-            Component::Limits => "0 within the range, 1 at a limit, joints as above",
-            Component::Actuation => "state of the actuators",
+            ProprioceptionComponent::Angles => "rad, joints as above",
+            ProprioceptionComponent::Velocities => "rad/s, joints as above",
+            ProprioceptionComponent::Torques => "N m, three for each torque sensor",
+            ProprioceptionComponent::Limits => "0 within the range, 1 at a limit, joints as above",
+            ProprioceptionComponent::Actuation => "state of the actuators",
         };
         let name = component.name();
         writeln!(out, "    {:4}..{:4} {name:10} {what}", range.start, range.end)?;

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 use babybench::Config;
 use babybench::config::Behavior;
-use babybench::eval::{Score, ScoreParts, Touchables, eval_logs};
+use babybench::eval::{Score, ScoreParts, TouchableGeoms, eval_logs};
 use babybench::mimo::{build_model, embedded};
 use babybench::runs::{read_scene, read_training, scene_compat};
 use clap::Args;
@@ -41,7 +41,7 @@ impl ScoreArgs {
             // names of parts come from the run's scene, which need not load here if the folder is the Python kit's
             ScoreParts::SelfTouch { .. } => match read_scene(&self.save_dir) {
                 Ok(model) => {
-                    let skin = Touchables::new(&model);
+                    let skin = TouchableGeoms::new(&model);
                     if let Some(skin) = &skin {
                         score = within_reach(score, skin);
                     }
@@ -58,7 +58,7 @@ impl ScoreArgs {
                         behavior,
                         ..Config::default()
                     };
-                    Touchables::new(&build_model(&config, &embedded())?)
+                    TouchableGeoms::new(&build_model(&config, &embedded())?)
                 }
             },
             ScoreParts::HandRegard { .. } => None,
@@ -89,7 +89,7 @@ impl ScoreArgs {
 }
 
 /// Returns the score without geoms that no hand can reach in the scene of the run, and prints a note about them.
-fn within_reach(score: Score, skin: &Touchables) -> Score {
+fn within_reach(score: Score, skin: &TouchableGeoms) -> Score {
     let parts = |score: &Score| match &score.parts {
         ScoreParts::SelfTouch { touched } => touched.each_ref().iter().map(|t| t.len()).sum(),
         ScoreParts::HandRegard { .. } => 0_usize,

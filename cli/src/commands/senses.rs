@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 use babybench::Limits;
 use babybench::config::Compat;
-use babybench::runs::{Motion, Playing, play_motion};
+use babybench::runs::{Motion, MotionMode, play_motion};
 use clap::Args;
 
 use super::record::Recording;
@@ -61,9 +61,9 @@ impl Senses {
         }
         let mut env = self.source.blueprint(Compat::Api)?.env()?;
         let (playing, how) = if self.track {
-            (Playing::Tracking, "tracking")
+            (MotionMode::Tracking, "tracking")
         } else {
-            (Playing::Kinematic, "kinematic")
+            (MotionMode::Kinematic, "kinematic")
         };
         let mut recorder = self.recording.recorder(&env, &format!("motion, {how}"))?;
         env.reset(self.seed)?;

@@ -80,7 +80,7 @@ impl Case {
     pub fn all() -> Vec<Self> {
         let mut all = Vec::new();
         for behavior in [Behavior::None, Behavior::HandRegard] {
-            for scene in Scene::ALL.iter().cloned() {
+            for scene in Scene::BABYBENCH.iter().cloned() {
                 let (act, lock) = (BodyParts::all(true), BodyParts::all(false));
                 let name = format!("{}_{scene}", Version::of(behavior).name());
                 let config = Config {
@@ -102,7 +102,7 @@ impl Case {
     pub fn examples() -> Vec<Self> {
         let mut all = Vec::new();
         for (_, example) in example_configs() {
-            for scene in Scene::ALL.iter().cloned() {
+            for scene in Scene::BABYBENCH.iter().cloned() {
                 let version = Version::of(example.behavior);
                 if version == Version::V1 && (example.scene == Scene::Base) != (scene == Scene::Base) {
                     continue;

@@ -1,6 +1,6 @@
 //! Actuation models against the reference: life cycle, parameters of muscles. `replay.rs` has their steps.
 
-use babybench::actuation::{Actuation, Muscle, MuscleParams};
+use babybench::actuation::{Actuation, MuscleModel, MuscleParams};
 use babybench::config::{ActuationModel, Behavior, Compat, Config, Scene};
 use babybench::mimo::{Version, build_model, embedded};
 use conformance::data;
@@ -56,7 +56,7 @@ fn parameters_of_all_muscles() {
             ..Config::default()
         };
         let model = build_model(&config, &embedded()).expect("the embedded assets load");
-        let muscles = Muscle::new(&model, Compat::Reference).expect("legal muscles");
+        let muscles = MuscleModel::new(&model, Compat::Reference).expect("legal muscles");
         let version = Version::of(behavior).name();
         let table = data::text(&format!("muscles/{version}_muscle_params.tsv"));
         let rows: Vec<Vec<&str>> = table.lines().skip(1).map(|l| l.split('\t').collect()).collect();

@@ -76,7 +76,7 @@ fn total(parts: &[Difference]) -> Difference {
 }
 
 fn eyes_and_room_cameras_show_what_mujoco_draws() {
-    for scene in Scene::ALL {
+    for scene in Scene::BABYBENCH {
         let config = config(scene.clone());
         let npz = data::npz(&format!("render_{scene}.npz"));
         let model = build_model(&config, &embedded()).expect("the scene compiles");

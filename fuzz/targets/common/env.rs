@@ -3,7 +3,7 @@
 
 use babybench::config::{ActuationModel, DelayUnit};
 use babybench::env::{
-    BlueprintOptions, EnvError, Goal, Task, TaskDocument, TaskScene, TaskSizes, TaskView, Verdict,
+    BlueprintOptions, EnvError, Goal, StepReward, Task, TaskDocument, TaskScene, TaskSizes, TaskView,
 };
 use babybench::{Blueprint, Config, Env, Model};
 
@@ -62,9 +62,9 @@ impl Task for Small {
         terms.fill(view.state.qvel[0]);
     }
 
-    fn judge(&self, goal: Goal<'_>) -> Verdict {
+    fn judge(&self, goal: Goal<'_>) -> StepReward {
         let distance = goal.desired[0] - goal.achieved[0];
-        Verdict { reward: distance, is_success: distance <= 0.0, is_failure: false }
+        StepReward { reward: distance, is_success: distance <= 0.0, is_failure: false }
     }
 
     fn save(&self, out: &mut Vec<f64>) {

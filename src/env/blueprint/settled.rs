@@ -43,13 +43,13 @@ pub fn make_skin(
 }
 
 /// A scene at rest.
-pub struct Settled {
+pub struct SettledScene {
     pub qpos: Vec<f64>,
     pub qvel: Vec<f64>,
     pub params: Shared<Params>,
 }
 
-impl Settled {
+impl SettledScene {
     /// Lets a task settle the scene, with the locks of the configuration. Under `compat: reference` locks apply from the first reset on.
     pub fn new(
         config: &Config,

@@ -11,7 +11,7 @@ use crate::sensors::SkinLayout;
 
 /// The skin and the look of a scene's bodies.
 #[derive(Clone)]
-pub(super) struct Surface {
+pub(super) struct SkinAndScenery {
     /// The caller's assets.
     pub(super) given: Arc<dyn AssetSource>,
     /// The same with the files of a custom scene.
@@ -25,7 +25,7 @@ pub(super) struct Surface {
     pub(super) gpu: Arc<OnceLock<SharedGpu>>,
 }
 
-impl std::fmt::Debug for Surface {
+impl std::fmt::Debug for SkinAndScenery {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.debug_struct("Surface")
             .field("skin", &self.skin)

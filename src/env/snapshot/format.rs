@@ -96,9 +96,9 @@ impl Snapshot {
     /// ```
     pub fn info(&self) -> SnapshotInfo {
         // a snapshot always has its header and its whole numbers
-        let mut header = Reader(self.bytes.get(MAGIC.len()..HEADER).unwrap_or_default());
+        let mut header = ByteReader(self.bytes.get(MAGIC.len()..HEADER).unwrap_or_default());
         let (version, _, fingerprint) = (header.u32(), header.u32(), header.u64());
-        let mut whole = Reader(self.bytes.get(HEADER..).unwrap_or_default());
+        let mut whole = ByteReader(self.bytes.get(HEADER..).unwrap_or_default());
         let [physics_steps, steps, _, ready, seed, drawn] = std::array::from_fn(|_| whole.u64().unwrap_or_default());
         SnapshotInfo {
             version: version.unwrap_or_default(),
@@ -125,7 +125,7 @@ impl Snapshot {
         if !bytes.starts_with(&MAGIC) {
             return Err(SnapshotError::NotASnapshot);
         }
-        let mut header = Reader(bytes.get(MAGIC.len()..HEADER).ok_or(CUT)?);
+        let mut header = ByteReader(bytes.get(MAGIC.len()..HEADER).ok_or(CUT)?);
         let version = header.u32().ok_or(CUT)?;
         if version != VERSION {
             return Err(SnapshotError::Version { found: version });
@@ -151,7 +151,7 @@ impl Snapshot {
     }
 
     pub(super) fn fingerprint(&self) -> Option<u64> {
-        Reader(self.bytes.get(MAGIC.len() + 8..HEADER)?).u64()
+        ByteReader(self.bytes.get(MAGIC.len() + 8..HEADER)?).u64()
     }
 }
 
@@ -174,9 +174,9 @@ pub(super) fn checksum(bytes: &[u8]) -> u64 {
 }
 
 /// A reader that takes numbers from the front of bytes.
-pub(super) struct Reader<'a>(pub(super) &'a [u8]);
+pub(super) struct ByteReader<'a>(pub(super) &'a [u8]);
 
-impl<'a> Reader<'a> {
+impl<'a> ByteReader<'a> {
     pub(super) fn take(&mut self, n: usize) -> Option<&'a [u8]> {
         let (head, tail) = self.0.split_at_checked(n)?;
         self.0 = tail;

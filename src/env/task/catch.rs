@@ -4,7 +4,7 @@ use super::pose::free_address;
 use super::scene::{TaskScene, TaskView};
 use super::starts::relax;
 use super::tracking::HeadTracking;
-use super::{Goal, Task, TaskDocument, TaskSizes, Verdict, body};
+use super::{Goal, StepReward, Task, TaskDocument, TaskSizes, body};
 use crate::config::{Compat, Config};
 use crate::env::EnvError;
 use crate::math::{Vec3, add, norm, sub};
@@ -80,12 +80,12 @@ pub(super) struct Catch {
     inaccurate: bool,
     penalty: bool,
     reference: bool,
-    memory: Memory,
+    memory: CatchMemory,
 }
 
 /// The task's memory from step to step.
 #[derive(Clone, Debug)]
-struct Memory {
+struct CatchMemory {
     /// Steps of the episode.
     steps: u64,
     /// Error of the point that the eyes follow, m.
@@ -98,7 +98,7 @@ struct Memory {
     factors: Vec<f64>,
 }
 
-impl Default for Memory {
+impl Default for CatchMemory {
     fn default() -> Self {
         Self {
             steps: 0,
@@ -110,7 +110,7 @@ impl Default for Memory {
     }
 }
 
-impl Memory {
+impl CatchMemory {
     /// Returns the index of the current step's contact.
     fn now(&self) -> usize {
         (self.steps % HELD as u64) as usize
@@ -288,11 +288,11 @@ impl Task for Catch {
         terms.copy_from_slice(&[flag(contact), cost, flag(held), flag(lost)]);
     }
 
-    fn judge(&self, goal: Goal<'_>) -> Verdict {
+    fn judge(&self, goal: Goal<'_>) -> StepReward {
         let &[contact, cost, held, lost] = goal.terms else {
-            return Verdict::default();
+            return StepReward::default();
         };
-        Verdict {
+        StepReward {
             reward: contact - COST * cost - BONUS * lost + BONUS * held,
             is_success: held > 0.0,
             is_failure: lost > 0.0,

@@ -4,7 +4,7 @@ use super::scene::TaskScene;
 use super::starts::random_start;
 use super::{Task, TaskEvent, TaskSizes, body};
 use crate::config::{Compat, Config};
-use crate::env::{BehaviorInfo, EnvError, Info, PerEyeAndHand, Regards, missing_camera};
+use crate::env::{BehaviorInfo, EnvError, Info, PerEyeAndHand, RegardCounts, missing_camera};
 use crate::math::*;
 use crate::model::Model;
 use crate::physics::State;
@@ -137,7 +137,7 @@ impl Task for HandRegard {
                 Compat::Api => (counts, other),
                 Compat::Reference => (other, counts),
             };
-            info.details.regards = Some(Regards { page, kit });
+            info.details.regards = Some(RegardCounts { page, kit });
         }
     }
 }

@@ -2,7 +2,7 @@
 
 use super::scene::{TaskScene, TaskView};
 use super::starts::random_start;
-use super::{Goal, Task, TaskEvent, TaskSizes, Verdict, body};
+use super::{Goal, StepReward, Task, TaskEvent, TaskSizes, body};
 use crate::config::{Config, Limb};
 use crate::env::{BehaviorInfo, EnvError, Info};
 use crate::math::*;
@@ -69,12 +69,12 @@ pub(super) struct Mobile {
     /// Time of a step, s.
     dt: f64,
     rewarded: bool,
-    memory: Memory,
+    memory: MobileMemory,
 }
 
 /// The task's memory from step to step.
 #[derive(Clone, Debug, Default)]
-struct Memory {
+struct MobileMemory {
     steps: u64,
     /// Movement of the mobile in the last step, m.
     moved: f64,
@@ -90,7 +90,7 @@ struct Memory {
     hung: Vec<Vec3>,
 }
 
-impl Memory {
+impl MobileMemory {
     fn save(&self, out: &mut Vec<f64>) {
         out.extend([self.steps as f64, self.moved]);
         out.extend_from_slice(&self.path);
@@ -251,9 +251,9 @@ impl Task for Mobile {
 
     fn begin(&mut self, scene: &mut TaskScene<'_>, _desired: &mut [f64]) {
         let hung = std::mem::take(&mut self.memory.hung);
-        self.memory = Memory {
+        self.memory = MobileMemory {
             hung,
-            ..Memory::default()
+            ..MobileMemory::default()
         };
         for (place, &pendant) in self.memory.hung.iter_mut().zip(&self.pendants) {
             *place = scene.state.xipos[pendant];
@@ -274,11 +274,11 @@ impl Task for Mobile {
         terms.copy_from_slice(&[self.memory.moved, self.ratio()]);
     }
 
-    fn judge(&self, goal: Goal<'_>) -> Verdict {
+    fn judge(&self, goal: Goal<'_>) -> StepReward {
         let &[moved, ratio] = goal.terms else {
-            return Verdict::default();
+            return StepReward::default();
         };
-        Verdict {
+        StepReward {
             reward: if self.rewarded { moved } else { 0.0 },
             is_success: ratio >= LEARNED,
             is_failure: false,

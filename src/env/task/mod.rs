@@ -23,7 +23,7 @@ use std::fmt::Debug;
 
 pub use goal::{Goal, GoalError, Outcome};
 pub(super) use goal::{Goals, rewards};
-pub(in crate::env) use scene::Passed;
+pub(in crate::env) use scene::ActionTiming;
 pub use scene::{TaskScene, TaskView};
 
 use crate::config::{Behavior, Config};
@@ -68,7 +68,7 @@ impl TaskDocument {
 
 /// The value of a step.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Verdict {
+pub struct StepReward {
     /// The reward.
     pub reward: f64,
     /// Whether the goal is reached.
@@ -178,9 +178,9 @@ pub trait Task: CloneTask + Debug + Send + Sync {
 
     /// Returns reward, success and failure as a function of goals and terms, so that programs can compute the reward of another goal. By
     /// default there is no reward and no end.
-    fn judge(&self, goal: Goal<'_>) -> Verdict {
+    fn judge(&self, goal: Goal<'_>) -> StepReward {
         let _ = goal;
-        Verdict::default()
+        StepReward::default()
     }
 
     /// Clears its counters when the information is cleared: at the start of an episode, unless counters continue.

@@ -2,7 +2,7 @@
 
 use super::scene::{TaskScene, TaskView};
 use super::starts::random_start;
-use super::{Goal, Task, TaskEvent, TaskSizes, Verdict};
+use super::{Goal, StepReward, Task, TaskEvent, TaskSizes};
 use crate::config::Config;
 use crate::env::{BehaviorInfo, EnvError, Info};
 use crate::math::*;
@@ -31,18 +31,18 @@ const MOVED: f64 = 0.05;
 pub(super) struct Play {
     toys: Vec<usize>,
     /// The owner of each geom (ngeom).
-    owner: Vec<Owner>,
+    owner: Vec<GeomOwner>,
     /// Time of a step, s.
     dt: f64,
     rewarded: bool,
-    memory: Memory,
+    memory: PlayMemory,
     /// Contacts of each toy in a step.
-    seen: Vec<Contacts>,
+    seen: Vec<ToyContacts>,
 }
 
 /// The owner of a geom.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-enum Owner {
+enum GeomOwner {
     #[default]
     World,
     Mimo,
@@ -54,7 +54,7 @@ enum Owner {
 
 /// The kinds of things that a toy touches.
 #[derive(Clone, Copy, Debug, Default)]
-struct Contacts {
+struct ToyContacts {
     mimo: bool,
     hand: bool,
     other: bool,
@@ -62,7 +62,7 @@ struct Contacts {
 
 /// A toy in an episode.
 #[derive(Clone, Copy, Debug, Default)]
-struct Toy {
+struct ToyMemory {
     touched: bool,
     held: bool,
     moved: bool,
@@ -74,8 +74,8 @@ struct Toy {
 
 /// The task's memory from step to step.
 #[derive(Clone, Debug, Default)]
-struct Memory {
-    toys: Vec<Toy>,
+struct PlayMemory {
+    toys: Vec<ToyMemory>,
     /// Steps in which a toy was held.
     holding: f64,
     /// Path of the toys since they were touched, m.
@@ -84,8 +84,8 @@ struct Memory {
     new: f64,
 }
 
-impl Memory {
-    fn number(&self, which: impl Fn(&Toy) -> bool) -> f64 {
+impl PlayMemory {
+    fn number(&self, which: impl Fn(&ToyMemory) -> bool) -> f64 {
         self.toys.iter().filter(|toy| which(toy)).count() as f64
     }
 }
@@ -93,16 +93,16 @@ impl Memory {
 impl Play {
     /// Collects the contacts of each toy.
     fn look(&mut self, state: &State) {
-        self.seen.fill(Contacts::default());
+        self.seen.fill(ToyContacts::default());
         for contact in &state.contact {
             let [a, b] = contact.geom.map(|geom| self.owner[geom]);
             for (own, other) in [(a, b), (b, a)] {
-                let Owner::Toy(toy) = own else { continue };
+                let GeomOwner::Toy(toy) = own else { continue };
                 let seen = &mut self.seen[toy];
                 match other {
-                    Owner::Hand => (seen.hand, seen.mimo) = (true, true),
-                    Owner::Mimo => seen.mimo = true,
-                    Owner::World | Owner::Toy(_) => seen.other = true,
+                    GeomOwner::Hand => (seen.hand, seen.mimo) = (true, true),
+                    GeomOwner::Mimo => seen.mimo = true,
+                    GeomOwner::World | GeomOwner::Toy(_) => seen.other = true,
                 }
             }
         }
@@ -144,17 +144,17 @@ impl Task for Play {
         let owner = |&body: &usize| {
             let toy = self.toys.iter().position(|&toy| model.in_subtree(body, toy));
             match toy {
-                Some(toy) => Owner::Toy(toy),
-                None if hands.iter().flatten().any(|&hand| model.in_subtree(body, hand)) => Owner::Hand,
-                None if mimo.contains(body) => Owner::Mimo,
-                None => Owner::World,
+                Some(toy) => GeomOwner::Toy(toy),
+                None if hands.iter().flatten().any(|&hand| model.in_subtree(body, hand)) => GeomOwner::Hand,
+                None if mimo.contains(body) => GeomOwner::Mimo,
+                None => GeomOwner::World,
             }
         };
         self.owner = model.geom_bodyid.iter().map(owner).collect();
         self.dt = model.opt.timestep * f64::from(config.frame_skip);
         self.rewarded = config.play.reward;
-        self.memory.toys = vec![Toy::default(); self.toys.len()];
-        self.seen = vec![Contacts::default(); self.toys.len()];
+        self.memory.toys = vec![ToyMemory::default(); self.toys.len()];
+        self.seen = vec![ToyContacts::default(); self.toys.len()];
         Ok(TaskSizes {
             goal: 0,
             terms: 2,
@@ -170,10 +170,10 @@ impl Task for Play {
         (self.memory.holding, self.memory.path, self.memory.new) = (0.0, 0.0, 0.0);
         for (toy, &body) in self.memory.toys.iter_mut().zip(&self.toys) {
             let place = scene.state.xipos[body];
-            *toy = Toy {
+            *toy = ToyMemory {
                 start: place,
                 last: place,
-                ..Toy::default()
+                ..ToyMemory::default()
             };
         }
     }
@@ -206,11 +206,11 @@ impl Task for Play {
         terms.copy_from_slice(&[self.memory.new, self.share()]);
     }
 
-    fn judge(&self, goal: Goal<'_>) -> Verdict {
+    fn judge(&self, goal: Goal<'_>) -> StepReward {
         let &[new, share] = goal.terms else {
-            return Verdict::default();
+            return StepReward::default();
         };
-        Verdict {
+        StepReward {
             reward: if self.rewarded { new } else { 0.0 },
             is_success: share >= 1.0,
             is_failure: false,

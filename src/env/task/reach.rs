@@ -4,7 +4,7 @@ use super::pose::free_address;
 use super::scene::{TaskScene, TaskView};
 use super::starts::random_start;
 use super::tracking::HeadTracking;
-use super::{Goal, Task, TaskSizes, Verdict, body};
+use super::{Goal, StepReward, Task, TaskSizes, body};
 use crate::config::{Compat, Config};
 use crate::env::EnvError;
 use crate::math::{Vec3, norm, sub};
@@ -35,7 +35,7 @@ pub(super) struct Reach {
 }
 
 /// Distance of the fingers, which the reference has instead of goals; whether the ball has moved.
-type Terms = [f64; 2];
+type ReachTerms = [f64; 2];
 
 impl Task for Reach {
     fn name(&self) -> &str {
@@ -94,17 +94,17 @@ impl Task for Reach {
             achieved.copy_from_slice(&fingers);
         }
         let moved = norm(sub(ball, self.first)) > MOVED;
-        let found: Terms = [norm(sub(fingers, ball)), f64::from(u8::from(moved))];
+        let found: ReachTerms = [norm(sub(fingers, ball)), f64::from(u8::from(moved))];
         terms.copy_from_slice(&found);
     }
 
-    fn judge(&self, goal: Goal<'_>) -> Verdict {
+    fn judge(&self, goal: Goal<'_>) -> StepReward {
         let is_success = goal.terms.get(1).is_some_and(|moved| *moved > 0.0);
         let distance = match (goal.achieved, goal.desired) {
             (&[x, y, z], &[u, v, w]) => norm(sub([x, y, z], [u, v, w])),
             _ => goal.terms.first().copied().unwrap_or_default(),
         };
-        Verdict {
+        StepReward {
             reward: -distance + if is_success { BONUS } else { 0.0 },
             is_success,
             is_failure: false,

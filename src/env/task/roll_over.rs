@@ -4,7 +4,7 @@ use super::pose::free_address;
 use super::scene::{TaskScene, TaskView};
 use super::standup::{REST, control_cost, first, reached, shaken_start};
 use super::starts::relax;
-use super::{Goal, Task, TaskSizes, Verdict, body};
+use super::{Goal, StepReward, Task, TaskSizes, body};
 use crate::config::{Compat, Config, StartingPosition};
 use crate::env::EnvError;
 use crate::model::Model;
@@ -98,8 +98,8 @@ impl Task for RollOver {
         terms.fill(control_cost(view, self.reference));
     }
 
-    fn judge(&self, goal: Goal<'_>) -> Verdict {
-        Verdict {
+    fn judge(&self, goal: Goal<'_>) -> StepReward {
+        StepReward {
             reward: first(goal.achieved) - first(goal.terms),
             is_success: reached(goal),
             is_failure: false,

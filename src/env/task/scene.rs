@@ -4,7 +4,7 @@ use crate::actuation::Actuation;
 use crate::config::{Compat, Config};
 use crate::env::action_delay::ActionDelay;
 use crate::env::engines::EngineSource;
-use crate::env::env_state::{Call, LastCall};
+use crate::env::env_state::{EngineCall, LastEngineCall};
 use crate::env::paths::Paths;
 use crate::env::{EnvError, check_vector};
 use crate::mimo::{LockTarget, held_posture, lock};
@@ -15,7 +15,7 @@ use crate::spaces::NumpyRng;
 
 /// When an action is passed to the delay before the actuators.
 #[derive(Clone, Copy)]
-pub(in crate::env) enum Passed {
+pub(in crate::env) enum ActionTiming {
     InStep,
     /// At once, unless `compat: reference` delays actions of resets, too.
     InReset,
@@ -36,7 +36,7 @@ pub struct TaskScene<'a> {
     pub rng: &'a mut NumpyRng,
     pub(in crate::env) engine: EngineSource<'a>,
     /// Where calls of the engine are noted, if they are.
-    pub(in crate::env) last_call: Option<&'a mut LastCall>,
+    pub(in crate::env) last_call: Option<&'a mut LastEngineCall>,
     /// Parameters after a reset.
     pub(in crate::env) base: &'a mut Shared<Params>,
     pub(in crate::env) actuation: &'a dyn Actuation,
@@ -146,7 +146,7 @@ impl<'a> TaskScene<'a> {
     /// The simulation diverged.
     pub fn forward(&mut self) -> Result<(), EnvError> {
         if let Some(last_call) = &mut self.last_call {
-            last_call.note(Call::Forward, self.state);
+            last_call.note(EngineCall::Forward, self.state);
         }
         Ok(self.engine.lend(|engine| engine.forward(self.state))?)
     }
@@ -156,15 +156,15 @@ impl<'a> TaskScene<'a> {
     /// # Errors
     /// The simulation diverged.
     pub fn act(&mut self, action: &[f32], steps: u32) -> Result<(), EnvError> {
-        self.set_action(action, Passed::InReset);
+        self.set_action(action, ActionTiming::InReset);
         self.advance(steps)
     }
 
     /// Gives an action to the actuators, through the delay before them.
-    pub(in crate::env) fn set_action(&mut self, action: &[f32], passed: Passed) {
+    pub(in crate::env) fn set_action(&mut self, action: &[f32], passed: ActionTiming) {
         let action = match (&mut self.delay, passed) {
-            (Some(delay), Passed::InStep) => delay.pass(action, self.rng),
-            (Some(delay), Passed::InReset) => delay.pass_in_reset(action, self.rng),
+            (Some(delay), ActionTiming::InStep) => delay.pass(action, self.rng),
+            (Some(delay), ActionTiming::InReset) => delay.pass_in_reset(action, self.rng),
             (None, _) => action,
         };
         self.actuation.set_action(self.model, self.state, action);
@@ -190,7 +190,7 @@ impl<'a> TaskScene<'a> {
         self.action.clear();
         self.action.resize(self.actuation.action_space().len(), 0.0);
         let action = std::mem::take(self.action);
-        self.set_action(&action, Passed::InReset);
+        self.set_action(&action, ActionTiming::InReset);
         *self.action = action;
         self.steps(steps)
     }
@@ -206,7 +206,7 @@ impl<'a> TaskScene<'a> {
                 paths.place(state);
             }
             if let Some(last_call) = last_call {
-                last_call.note(Call::Step, state);
+                last_call.note(EngineCall::Step, state);
             }
             engine.step(state)
         };

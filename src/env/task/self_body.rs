@@ -3,7 +3,7 @@
 use super::pose::{Angles, free_address, own_joint, set_angles};
 use super::scene::{TaskScene, TaskView};
 use super::starts::relax;
-use super::{Goal, Task, TaskDocument, TaskSizes, Verdict, body};
+use super::{Goal, StepReward, Task, TaskDocument, TaskSizes, body};
 use crate::config::{Compat, Config};
 use crate::env::EnvError;
 use crate::math::{norm, sub};
@@ -224,7 +224,7 @@ impl Task for SelfBody {
         (terms[0], terms[1]) = (0.0, f64::from(u8::from(felt)));
     }
 
-    fn judge(&self, goal: Goal<'_>) -> Verdict {
+    fn judge(&self, goal: Goal<'_>) -> StepReward {
         let both = goal
             .achieved
             .iter()
@@ -240,7 +240,7 @@ impl Task for SelfBody {
             Some(nearest) if felt => -nearest,
             _ => NOTHING,
         };
-        Verdict {
+        StepReward {
             reward,
             is_success,
             is_failure: false,

@@ -3,7 +3,7 @@
 use super::pose::{Angles, free_address, set_angles};
 use super::scene::{TaskScene, TaskView};
 use super::starts::relax;
-use super::{Goal, Task, TaskSizes, Verdict, body};
+use super::{Goal, StepReward, Task, TaskSizes, body};
 use crate::config::{Compat, Config};
 use crate::env::EnvError;
 use crate::model::Model;
@@ -126,8 +126,8 @@ impl Task for Standup {
         terms.fill(control_cost(view, self.reference));
     }
 
-    fn judge(&self, goal: Goal<'_>) -> Verdict {
-        Verdict {
+    fn judge(&self, goal: Goal<'_>) -> StepReward {
+        StepReward {
             reward: first(goal.achieved) - SITTING - first(goal.terms),
             is_success: reached(goal),
             is_failure: false,

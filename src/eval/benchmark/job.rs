@@ -22,7 +22,7 @@ const MARKS: [u64; 5] = [1_000, 10_000, 100_000, 1_000_000, 10_000_000];
 
 /// A run of a benchmark: a configuration, a policy and a seed.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Job {
+pub struct BenchmarkJob {
     /// Its name, which its files have.
     pub name: String,
     stem: String,
@@ -78,7 +78,7 @@ pub struct RunResult {
     pub steps_per_second: f64,
 }
 
-impl Job {
+impl BenchmarkJob {
     pub(super) fn new(stem: &str, config: &Config, policy: &str, seed: u64, plan: &BenchmarkPlan) -> Self {
         let plain = |text: &str| -> String {
             let short = text.chars().take(40);

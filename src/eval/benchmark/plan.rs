@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use granit_parser::{Event, Options, Parser};
 use serde::{Deserialize, Serialize};
 
-use super::{BenchmarkError, Job};
+use super::{BenchmarkError, BenchmarkJob};
 use crate::config::{Config, MAX_AGE};
 use crate::files;
 use crate::limits::Limits;
@@ -94,7 +94,7 @@ impl BenchmarkPlan {
             evaluate: 0,
             dir,
         };
-        for Entry { key, values, line } in entries(text)? {
+        for PlanEntry { key, values, line } in entries(text)? {
             let at = |reason: String| (line, reason);
             match key.as_str() {
                 "name" => plan.name = single(&key, &values).map_err(at)?.to_string(),
@@ -146,7 +146,7 @@ impl BenchmarkPlan {
     ///
     /// # Errors
     /// A configuration that cannot be read or is not allowed at an age.
-    pub fn jobs(&self) -> Result<Vec<Job>, BenchmarkError> {
+    pub fn jobs(&self) -> Result<Vec<BenchmarkJob>, BenchmarkError> {
         let mut out = Vec::new();
         for file in &self.configs {
             let config = Config::from_file(self.dir.join(file))?;
@@ -162,7 +162,7 @@ impl BenchmarkPlan {
                 };
                 for policy in &self.policies {
                     for seed in 0..self.seeds {
-                        out.push(Job::new(&stem, &config, policy, seed, self));
+                        out.push(BenchmarkJob::new(&stem, &config, policy, seed, self));
                     }
                 }
             }
@@ -172,17 +172,17 @@ impl BenchmarkPlan {
 }
 
 /// A key with its values.
-struct Entry {
+struct PlanEntry {
     key: String,
     values: Vec<String>,
     line: u32,
 }
 
 /// Reads a flat mapping of scalars and lists of scalars.
-fn entries(text: &str) -> Result<Vec<Entry>, (u32, String)> {
+fn entries(text: &str) -> Result<Vec<PlanEntry>, (u32, String)> {
     let mut options = Options::default();
     options.set_emit_comments(false);
-    let mut found: Vec<Entry> = Vec::new();
+    let mut found: Vec<PlanEntry> = Vec::new();
     let (mut key, mut list, mut inside) = (None::<(String, u32)>, None::<Vec<String>>, false);
     for event in Parser::new_from_str_with_options(text, options) {
         let (event, span) = event.map_err(|error| {
@@ -203,7 +203,7 @@ fn entries(text: &str) -> Result<Vec<Entry>, (u32, String)> {
             Event::SequenceStart(..) if inside && key.is_some() && list.is_none() => list = Some(Vec::new()),
             Event::SequenceEnd => {
                 if let (Some(values), Some((key, line))) = (list.take(), key.take()) {
-                    found.push(Entry { key, values, line });
+                    found.push(PlanEntry { key, values, line });
                 }
             }
             Event::Scalar(value, ..) if inside => match (&mut list, &key) {
@@ -214,7 +214,7 @@ fn entries(text: &str) -> Result<Vec<Entry>, (u32, String)> {
                 (None, Some(_)) => {
                     if let Some((key, line)) = key.take() {
                         let values = vec![value.into_owned()];
-                        found.push(Entry { key, values, line });
+                        found.push(PlanEntry { key, values, line });
                     }
                 }
                 (None, None) if found.iter().any(|entry| entry.key == *value) => {

@@ -10,7 +10,7 @@ const SAMPLES: usize = 10_000;
 /// A mean over runs, with the interval that holds 95 % of the means of samples drawn from them with replacement (B. Efron, "Bootstrap
 /// methods: another look at the jackknife", 1979; percentiles).
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Interval {
+pub struct ConfidenceInterval {
     /// The mean.
     pub mean: f64,
     /// The lower end: 2.5 % of the samples have a smaller mean.
@@ -21,13 +21,13 @@ pub struct Interval {
     pub runs: usize,
 }
 
-impl Interval {
+impl ConfidenceInterval {
     /// Computes mean and interval, the same for the same values in the same order; `None` without values.
     ///
     /// ```
-    /// use babybench::eval::Interval;
+    /// use babybench::eval::ConfidenceInterval;
     ///
-    /// let interval = Interval::of(&[1.0, 2.0, 3.0, 4.0, 5.0]).expect("values");
+    /// let interval = ConfidenceInterval::of(&[1.0, 2.0, 3.0, 4.0, 5.0]).expect("values");
     /// assert_eq!(interval.mean, 3.0);
     /// assert!((1.6..2.0).contains(&interval.low) && (4.0..4.4).contains(&interval.high));
     /// ```
@@ -57,8 +57,8 @@ mod tests {
 
     #[test]
     fn one_value_is_its_own_interval() {
-        let only = Interval::of(&[0.25]).expect("a value");
+        let only = ConfidenceInterval::of(&[0.25]).expect("a value");
         assert_eq!((only.mean, only.low, only.high, only.runs), (0.25, 0.25, 0.25, 1));
-        assert_eq!(Interval::of(&[]), None);
+        assert_eq!(ConfidenceInterval::of(&[]), None);
     }
 }

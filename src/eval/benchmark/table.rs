@@ -5,13 +5,13 @@ use std::fmt::Write as _;
 
 use serde::{Deserialize, Serialize};
 
-use super::{Benchmark, Interval, RunResult};
+use super::{Benchmark, ConfidenceInterval, RunResult};
 use crate::eval::Measures;
 
 /// A row of the table: the runs of a configuration, an age and a policy.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[non_exhaustive]
-pub struct Row {
+pub struct BenchmarkRow {
     /// The file of the configuration, without its ending.
     pub config: String,
     /// The behavior.
@@ -21,7 +21,7 @@ pub struct Row {
     /// The policy.
     pub policy: String,
     /// The means of all that was measured, by the name of the metric.
-    pub metrics: BTreeMap<String, Interval>,
+    pub metrics: BTreeMap<String, ConfidenceInterval>,
 }
 
 /// Something that is measured in a run.
@@ -94,27 +94,27 @@ impl Metric {
 }
 
 /// Groups the runs that differ only in their seeds.
-pub(super) fn rows(runs: &[RunResult]) -> Vec<Row> {
+pub(super) fn rows(runs: &[RunResult]) -> Vec<BenchmarkRow> {
     let same = |a: &RunResult, b: &RunResult| (&a.config, a.age, &a.policy) == (&b.config, b.age, &b.policy);
     runs.chunk_by(|a, b| same(a, b))
         .filter_map(|group| group.first().map(|first| row(first, group)))
         .collect()
 }
 
-fn row(first: &RunResult, group: &[RunResult]) -> Row {
+fn row(first: &RunResult, group: &[RunResult]) -> BenchmarkRow {
     let mut metrics = BTreeMap::new();
     for metric in Metric::ALL {
         let values: Vec<f64> = group.iter().filter_map(|run| metric.of(run)).collect();
-        metrics.extend(Interval::of(&values).map(|interval| (metric.name.to_string(), interval)));
+        metrics.extend(ConfidenceInterval::of(&values).map(|interval| (metric.name.to_string(), interval)));
     }
     for &mark in first.score_at.keys() {
         let values: Vec<f64> = group
             .iter()
             .filter_map(|run| run.score_at.get(&mark).copied())
             .collect();
-        metrics.extend(Interval::of(&values).map(|interval| (format!("score_at_{mark}"), interval)));
+        metrics.extend(ConfidenceInterval::of(&values).map(|interval| (format!("score_at_{mark}"), interval)));
     }
-    Row {
+    BenchmarkRow {
         config: first.config.clone(),
         behavior: first.behavior.clone(),
         age: first.age,
@@ -123,10 +123,10 @@ fn row(first: &RunResult, group: &[RunResult]) -> Row {
     }
 }
 
-impl Row {
+impl BenchmarkRow {
     /// Returns a metric as tables show it: the mean, then the interval of 95 %.
     pub fn text(&self, metric: &str, decimals: usize) -> Option<String> {
-        let Interval { mean, low, high, .. } = *self.metrics.get(metric)?;
+        let ConfidenceInterval { mean, low, high, .. } = *self.metrics.get(metric)?;
         Some(format!("{mean:.decimals$} ({low:.decimals$} to {high:.decimals$})"))
     }
 }
@@ -187,7 +187,7 @@ impl Benchmark {
 }
 
 /// Appends the section of a configuration: tables with a line for each policy and age.
-fn section(out: &mut String, group: &[Row], columns: &[(String, String, usize)]) {
+fn section(out: &mut String, group: &[BenchmarkRow], columns: &[(String, String, usize)]) {
     // columns of a table, so that its rows fit on a screen
     const WIDTH: usize = 5;
     let Some(first) = group.first() else {
@@ -202,7 +202,7 @@ fn section(out: &mut String, group: &[Row], columns: &[(String, String, usize)])
 }
 
 /// Appends a table of some columns.
-fn table(out: &mut String, group: &[Row], shown: &[&(String, String, usize)]) {
+fn table(out: &mut String, group: &[BenchmarkRow], shown: &[&(String, String, usize)]) {
     let ages = group.iter().any(|row| row.age.is_some());
     let _ = write!(out, "| policy |{}", if ages { " age, months |" } else { "" });
     for (_, heading, _) in shown {

@@ -46,7 +46,7 @@ pub enum Panel<'a> {
 
 /// The viewpoint of a picture.
 #[derive(Clone, Copy, Debug)]
-enum Spot {
+enum Viewpoint {
     /// A camera of the scene.
     Camera(usize),
     /// In front of MIMo's hip, for rooms without the camera: offset (m) and orientation.
@@ -57,9 +57,9 @@ enum Spot {
 #[derive(Debug)]
 pub struct FrameComposer {
     renderer: CpuRenderer,
-    corner: Spot,
-    top: Spot,
-    side: Spot,
+    corner: Viewpoint,
+    top: Viewpoint,
+    side: Viewpoint,
     eyes: Option<[usize; 2]>,
     hip: usize,
     picture: Vec<u8>,
@@ -76,10 +76,10 @@ impl FrameComposer {
     pub fn new(model: &Model) -> Result<Self, FrameError> {
         let origin = vec![[0.0; 3]; model.nbody()];
         let camera = |name: &'static str| match (model.camera(name), room_camera(model, &origin, name)) {
-            (Some(camera), _) => Ok(Spot::Camera(camera)),
+            (Some(camera), _) => Ok(Viewpoint::Camera(camera)),
             (None, Some(free)) => free
                 .pose()
-                .map(|(offset, mat)| Spot::Free(offset, mat))
+                .map(|(offset, mat)| Viewpoint::Free(offset, mat))
                 .map_err(FrameError::from),
             (None, None) => Err(FrameError::Camera(name)),
         };
@@ -140,13 +140,13 @@ impl FrameComposer {
         Ok(())
     }
 
-    fn draw(&mut self, scenery: &Scenery, poses: &Poses, from: Spot) -> Result<(), FrameError> {
+    fn draw(&mut self, scenery: &Scenery, poses: &Poses, from: Viewpoint) -> Result<(), FrameError> {
         let (poses, camera) = self.stand(poses, from);
         Ok(self.renderer.rgb(scenery, &poses, &view(camera), &mut self.picture)?)
     }
 
     /// Draws a panel of half the size: every second pixel of every second row.
-    fn half(&mut self, scenery: &Scenery, poses: &Poses, from: Spot) -> Result<(), FrameError> {
+    fn half(&mut self, scenery: &Scenery, poses: &Poses, from: Viewpoint) -> Result<(), FrameError> {
         let (poses, camera) = self.stand(poses, from);
         Ok(self
             .renderer
@@ -154,11 +154,11 @@ impl FrameComposer {
     }
 
     /// Returns the poses and the camera of a spot.
-    fn stand<'p>(&self, poses: &Poses<'p>, from: Spot) -> (Poses<'p>, usize) {
+    fn stand<'p>(&self, poses: &Poses<'p>, from: Viewpoint) -> (Poses<'p>, usize) {
         let mut poses = *poses;
         match from {
-            Spot::Camera(camera) => (poses, camera),
-            Spot::Free(offset, mat) => {
+            Viewpoint::Camera(camera) => (poses, camera),
+            Viewpoint::Free(offset, mat) => {
                 let hip = poses.xpos.get(self.hip).copied().unwrap_or_default();
                 poses.free = Some((add(hip, offset), mat));
                 (poses, View::FREE)
@@ -168,9 +168,9 @@ impl FrameComposer {
 
     fn binocular(&mut self, scenery: &Scenery, poses: &Poses) -> Result<(), FrameError> {
         let [left, right] = self.eyes.ok_or(FrameError::Camera("eye_left"))?;
-        self.half(scenery, poses, Spot::Camera(left))?;
+        self.half(scenery, poses, Viewpoint::Camera(left))?;
         std::mem::swap(&mut self.half, &mut self.other);
-        self.half(scenery, poses, Spot::Camera(right))?;
+        self.half(scenery, poses, Viewpoint::Camera(right))?;
         for (right, left) in self.half.chunks_exact_mut(3).zip(self.other.chunks_exact(3)) {
             let cyan = luma([right[0], right[1], right[2]]);
             right.copy_from_slice(&[luma([left[0], left[1], left[2]]), cyan, cyan]);

@@ -10,7 +10,7 @@ const GAP: f64 = 0.1;
 
 /// The touches of a step.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Step {
+pub(super) struct TouchStep {
     /// The regions that the right and the left hand touch, by number.
     regions: [Vec<usize>; 2],
     pub hand_to_hand: bool,
@@ -19,8 +19,8 @@ pub(super) struct Step {
 
 /// The touches of an episode, step by step.
 #[derive(Debug, Default)]
-pub(super) struct Steps {
-    steps: Vec<Step>,
+pub(super) struct TouchSteps {
+    steps: Vec<TouchStep>,
     /// Names of regions, seen from the hand that touches them.
     names: Vec<String>,
 }
@@ -45,7 +45,7 @@ fn region_of(geom: &GeomDescription, hand: usize) -> Option<String> {
     })
 }
 
-impl Steps {
+impl TouchSteps {
     /// Reads the contacts of an episode; `None` if they do not fit the description.
     pub fn read(npz: &Npz, manifest: &Manifest) -> Result<Option<Self>, NpzError> {
         let (ptr, geoms) = (npz.get_i64("contact_ptr")?.data, npz.get_i64("contact_geom")?);
@@ -57,7 +57,7 @@ impl Steps {
         }
         let mut out = Self::default();
         for ends in ptr.windows(2) {
-            let mut step = Step::default();
+            let mut step = TouchStep::default();
             for c in ends[0] as usize..ends[1] as usize {
                 let describe = |k: usize| {
                     usize::try_from(geoms.data[2 * c + k])
@@ -77,7 +77,7 @@ impl Steps {
         Ok(Some(out))
     }
 
-    fn touch(&mut self, step: &mut Step, a: &GeomDescription, b: &GeomDescription) {
+    fn touch(&mut self, step: &mut TouchStep, a: &GeomDescription, b: &GeomDescription) {
         if a.region.is_none() || b.region.is_none() {
             return;
         }
@@ -107,7 +107,7 @@ impl Steps {
     }
 
     /// Returns the share of the steps that satisfy a condition.
-    pub fn share(&self, holds: impl Fn(&Step) -> bool) -> f64 {
+    pub fn share(&self, holds: impl Fn(&TouchStep) -> bool) -> f64 {
         super::ratio(
             self.steps.iter().filter(|step| holds(step)).count() as f64,
             self.len() as f64,
@@ -138,13 +138,13 @@ impl Steps {
 
 /// Touches: runs of steps with contact, across short gaps.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(super) struct Bouts {
+pub(super) struct TouchBouts {
     pub number: usize,
     /// Steps of all of them, with the gaps within.
     pub steps: usize,
 }
 
-impl Bouts {
+impl TouchBouts {
     /// Finds the touches in steps of `dt` s.
     pub fn of(touching: &[bool], dt: f64) -> Self {
         let mut found = Self::default();
@@ -171,7 +171,7 @@ mod tests {
     fn touches_go_on_through_short_gaps() {
         let steps = |text: &str| text.chars().map(|c| c == 'x').collect::<Vec<bool>>();
         let of = |text: &str, dt: f64| {
-            let Bouts { number, steps } = Bouts::of(&steps(text), dt);
+            let TouchBouts { number, steps } = TouchBouts::of(&steps(text), dt);
             (number, steps)
         };
         assert_eq!(of("", 0.01), (0, 0));

@@ -2,7 +2,7 @@
 
 use serde::ser::{Serialize, SerializeMap as _, Serializer};
 
-use super::{Score, ScoreParts, Touchables};
+use super::{Score, ScoreParts, TouchableGeoms};
 use crate::env::EYE_HAND_PAIRS;
 use crate::env::SCORED_PARTS as PARTS;
 
@@ -10,7 +10,7 @@ impl Serialize for Score {
     /// Serializes the score as [`Score::to_json`] prints it without names.
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let skin = None;
-        Described { score: self, skin }.serialize(serializer)
+        NamedScore { score: self, skin }.serialize(serializer)
     }
 }
 
@@ -28,12 +28,12 @@ impl Serialize for ScoreParts {
 const HANDS: [&str; 2] = ["right_hand", "left_hand"];
 
 /// A score with the names of parts.
-pub(super) struct Described<'a> {
+pub(super) struct NamedScore<'a> {
     pub score: &'a Score,
-    pub skin: Option<&'a Touchables>,
+    pub skin: Option<&'a TouchableGeoms>,
 }
 
-impl Serialize for Described<'_> {
+impl Serialize for NamedScore<'_> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let (score, skin) = (self.score, self.skin);
         let mut map = serializer.serialize_map(None)?;
@@ -69,7 +69,7 @@ impl Serialize for Described<'_> {
 struct HandTouches<'a> {
     hand: usize,
     touched: &'a [usize],
-    skin: Option<&'a Touchables>,
+    skin: Option<&'a TouchableGeoms>,
 }
 
 impl Serialize for HandTouches<'_> {
@@ -80,7 +80,7 @@ impl Serialize for HandTouches<'_> {
         if let Some(skin) = self.skin {
             let reachable = skin.reachable(self.hand);
             map.serialize_entry("reachable", reachable)?;
-            let names = |geoms| Names { skin, geoms };
+            let names = |geoms| GeomNames { skin, geoms };
             map.serialize_entry("touched_names", &names(self.touched))?;
             map.serialize_entry("reachable_names", &names(reachable))?;
         }
@@ -89,12 +89,12 @@ impl Serialize for HandTouches<'_> {
 }
 
 /// Geoms by their names.
-struct Names<'a> {
-    skin: &'a Touchables,
+struct GeomNames<'a> {
+    skin: &'a TouchableGeoms,
     geoms: &'a [usize],
 }
 
-impl Serialize for Names<'_> {
+impl Serialize for GeomNames<'_> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         serializer.collect_seq(self.geoms.iter().map(|&g| self.skin.name(g).to_string()))
     }

@@ -1,7 +1,7 @@
 //! Protocols 2 to 5 to values: the opcodes that logs need.
 
-use super::objects::{Item, Object};
-use super::stack::{Done, Machine};
+use super::objects::{PickleObject, StackItem};
+use super::stack::{OpcodeResult, PickleMachine};
 use super::{PickleError, Value};
 use crate::limits::Limits;
 
@@ -23,10 +23,10 @@ pub fn from_bytes_with(bytes: &[u8], limits: &Limits) -> Result<Value, PickleErr
         let (what, limit) = ("bytes", limits.pickle_bytes);
         return Err(PickleError::Limit { what, limit });
     }
-    Machine::new(bytes, limits).run()
+    PickleMachine::new(bytes, limits).run()
 }
 
-impl Machine<'_> {
+impl PickleMachine<'_> {
     fn run(mut self) -> Result<Value, PickleError> {
         loop {
             if let Some(root) = self.advance()? {
@@ -37,7 +37,7 @@ impl Machine<'_> {
 
     /// Executes the next opcode; the last one returns the value that is left.
     #[inline]
-    pub(super) fn advance(&mut self) -> Result<Option<Item>, PickleError> {
+    pub(super) fn advance(&mut self) -> Result<Option<StackItem>, PickleError> {
         self.op = self.at;
         if self.at == 0 && self.bytes.first().is_some_and(|b| *b != 0x80) {
             return Err(self.bad("it does not start with a protocol number from 2 on"));
@@ -61,7 +61,7 @@ impl Machine<'_> {
     }
 
     #[inline]
-    fn step(&mut self, opcode: u8) -> Done {
+    fn step(&mut self, opcode: u8) -> OpcodeResult {
         match opcode {
             0x80 => match self.array()? {
                 [2..=5] => Ok(()),
@@ -88,15 +88,15 @@ impl Machine<'_> {
 
     /// Pushes a byte as an integer, and at most 63 more that follow: lists of small numbers are what logs are made of.
     #[inline]
-    fn small(&mut self) -> Done {
+    fn small(&mut self) -> OpcodeResult {
         let [number] = self.array()?;
-        self.stack.push(Item::Int(i64::from(number)));
+        self.stack.push(StackItem::Int(i64::from(number)));
         let (more, _) = self.bytes.get(self.at..).unwrap_or_default().as_chunks::<2>();
         for &[opcode, number] in more.iter().take(63) {
             if opcode != b'K' {
                 break;
             }
-            self.stack.push(Item::Int(i64::from(number)));
+            self.stack.push(StackItem::Int(i64::from(number)));
             self.at += 2;
         }
         Ok(())
@@ -104,14 +104,14 @@ impl Machine<'_> {
 
     /// Pushes a scalar: None, a boolean, an integer or a float.
     #[inline]
-    fn scalar(&mut self, opcode: u8) -> Done {
+    fn scalar(&mut self, opcode: u8) -> OpcodeResult {
         let item = match opcode {
             b'K' => return self.small(),
-            b'N' => Item::None,
-            0x88 | 0x89 => Item::Bool(opcode == 0x88),
-            b'J' => Item::Int(i64::from(i32::from_le_bytes(self.array()?))),
-            b'M' => Item::Int(i64::from(u16::from_le_bytes(self.array()?))),
-            b'G' => Item::Float(f64::from_be_bytes(self.array()?)),
+            b'N' => StackItem::None,
+            0x88 | 0x89 => StackItem::Bool(opcode == 0x88),
+            b'J' => StackItem::Int(i64::from(i32::from_le_bytes(self.array()?))),
+            b'M' => StackItem::Int(i64::from(u16::from_le_bytes(self.array()?))),
+            b'G' => StackItem::Float(f64::from_be_bytes(self.array()?)),
             _ => {
                 let digits = self.sized::<1>()?;
                 let negative = digits.last().is_some_and(|b| b & 0x80 != 0);
@@ -121,7 +121,7 @@ impl Machine<'_> {
                     Some(low) => low.copy_from_slice(digits),
                     None => return Err(self.bad("an integer of more than 64 bits")),
                 }
-                Item::Int(i64::from_le_bytes(all))
+                StackItem::Int(i64::from_le_bytes(all))
             }
         };
         self.stack.push(item);
@@ -129,7 +129,7 @@ impl Machine<'_> {
     }
 
     /// Pushes text or bytes.
-    fn bytes(&mut self, opcode: u8) -> Done {
+    fn bytes(&mut self, opcode: u8) -> OpcodeResult {
         let bytes = match opcode {
             0x8c | b'C' => self.sized::<1>()?,
             b'X' | b'B' => self.sized::<4>()?,
@@ -144,7 +144,7 @@ impl Machine<'_> {
 
     /// Writes to the memo, or pushes what it remembers.
     #[inline]
-    fn recall(&mut self, opcode: u8) -> Done {
+    fn recall(&mut self, opcode: u8) -> OpcodeResult {
         let index = match opcode {
             0x94 => self.memo_length,
             b'q' | b'h' => usize::from(u8::from_le_bytes(self.array()?)),
@@ -158,19 +158,19 @@ impl Machine<'_> {
 
     /// Makes or fills a list, a tuple or a dictionary.
     #[inline]
-    fn collection(&mut self, opcode: u8) -> Done {
+    fn collection(&mut self, opcode: u8) -> OpcodeResult {
         match opcode {
             b'(' => self.marks.push(self.stack.len()),
-            b']' => self.push(Object::List(Vec::new())),
-            b'}' => self.push(Object::Dict(Vec::new())),
-            b')' => self.push(Object::Tuple(Vec::new())),
-            0x85 => return self.pops::<1>().map(|v| self.push(Object::Tuple(v.to_vec()))),
-            0x86 => return self.pops::<2>().map(|v| self.push(Object::Tuple(v.to_vec()))),
-            0x87 => return self.pops::<3>().map(|v| self.push(Object::Tuple(v.to_vec()))),
+            b']' => self.push(PickleObject::List(Vec::new())),
+            b'}' => self.push(PickleObject::Dict(Vec::new())),
+            b')' => self.push(PickleObject::Tuple(Vec::new())),
+            0x85 => return self.pops::<1>().map(|v| self.push(PickleObject::Tuple(v.to_vec()))),
+            0x86 => return self.pops::<2>().map(|v| self.push(PickleObject::Tuple(v.to_vec()))),
+            0x87 => return self.pops::<3>().map(|v| self.push(PickleObject::Tuple(v.to_vec()))),
             b't' => {
                 let items = self.pop_mark()?;
                 self.spend(items.len())?;
-                self.push(Object::Tuple(items));
+                self.push(PickleObject::Tuple(items));
             }
             b'a' => return self.pop().and_then(|item| self.append(vec![item])),
             b'e' => return self.append_marked(),
@@ -181,12 +181,12 @@ impl Machine<'_> {
         Ok(())
     }
 
-    fn append(&mut self, items: Vec<Item>) -> Done {
+    fn append(&mut self, items: Vec<StackItem>) -> OpcodeResult {
         self.spend(items.len())?;
         match self.top()? {
-            Item::Object(list) => match &mut self.objects[list] {
-                Object::List(l) if l.is_empty() => *l = items,
-                Object::List(l) => l.extend(items),
+            StackItem::Object(list) => match &mut self.objects[list] {
+                PickleObject::List(l) if l.is_empty() => *l = items,
+                PickleObject::List(l) => l.extend(items),
                 _ => return Err(self.bad("items for something that is not a list")),
             },
             _ => return Err(self.bad("items for something that is not a list")),
@@ -194,14 +194,14 @@ impl Machine<'_> {
         Ok(())
     }
 
-    fn set_items(&mut self, items: &[Item]) -> Done {
+    fn set_items(&mut self, items: &[StackItem]) -> OpcodeResult {
         let (pairs, []) = items.as_chunks::<2>() else {
             return Err(self.bad("a key without a value"));
         };
         self.spend(items.len())?;
         match self.top()? {
-            Item::Object(dict) => match &mut self.objects[dict] {
-                Object::Dict(d) => d.extend(pairs.iter().map(|&[k, v]| (k, v))),
+            StackItem::Object(dict) => match &mut self.objects[dict] {
+                PickleObject::Dict(d) => d.extend(pairs.iter().map(|&[k, v]| (k, v))),
                 _ => return Err(self.bad("entries for something that is not a dictionary")),
             },
             _ => return Err(self.bad("entries for something that is not a dictionary")),

@@ -4,7 +4,7 @@ use super::Array;
 
 /// Types of real numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Kind {
+enum NumberKind {
     Float,
     Signed,
     Unsigned,
@@ -14,7 +14,7 @@ enum Kind {
 /// A NumPy type of real numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Dtype {
-    kind: Kind,
+    kind: NumberKind,
     size: usize,
     pub big_endian: bool,
 }
@@ -26,17 +26,17 @@ impl Dtype {
     /// Returns the type with NumPy's short name, such as `f8`.
     pub fn named(name: &str) -> Option<Self> {
         let (kind, size) = match name {
-            "f8" => (Kind::Float, 8),
-            "f4" => (Kind::Float, 4),
-            "i8" => (Kind::Signed, 8),
-            "i4" => (Kind::Signed, 4),
-            "i2" => (Kind::Signed, 2),
-            "i1" => (Kind::Signed, 1),
-            "u8" => (Kind::Unsigned, 8),
-            "u4" => (Kind::Unsigned, 4),
-            "u2" => (Kind::Unsigned, 2),
-            "u1" => (Kind::Unsigned, 1),
-            "b1" => (Kind::Bool, 1),
+            "f8" => (NumberKind::Float, 8),
+            "f4" => (NumberKind::Float, 4),
+            "i8" => (NumberKind::Signed, 8),
+            "i4" => (NumberKind::Signed, 4),
+            "i2" => (NumberKind::Signed, 2),
+            "i1" => (NumberKind::Signed, 1),
+            "u8" => (NumberKind::Unsigned, 8),
+            "u4" => (NumberKind::Unsigned, 4),
+            "u2" => (NumberKind::Unsigned, 2),
+            "u1" => (NumberKind::Unsigned, 1),
+            "b1" => (NumberKind::Bool, 1),
             _ => return None,
         };
         Some(Self {
@@ -49,8 +49,8 @@ impl Dtype {
     /// Decodes a number. Integers beyond 2^53 lose digits here, but not in [`Dtype::integer`].
     fn number(self, bytes: &[u8]) -> f64 {
         match (self.kind, bytes) {
-            (Kind::Float, &[a, b, c, d]) => f64::from(f32::from_le_bytes([a, b, c, d])),
-            (Kind::Float, &[a, b, c, d, e, f, g, h]) => f64::from_le_bytes([a, b, c, d, e, f, g, h]),
+            (NumberKind::Float, &[a, b, c, d]) => f64::from(f32::from_le_bytes([a, b, c, d])),
+            (NumberKind::Float, &[a, b, c, d, e, f, g, h]) => f64::from_le_bytes([a, b, c, d, e, f, g, h]),
             _ => self.integer(bytes) as f64,
         }
     }
@@ -60,15 +60,15 @@ impl Dtype {
         let unsigned = bytes.iter().rev().fold(0_i128, |n, &b| n << 8 | i128::from(b));
         let sign_bit = 1_i128 << (8 * self.size - 1);
         match self.kind {
-            Kind::Signed if unsigned & sign_bit != 0 => unsigned - 2 * sign_bit,
-            Kind::Bool => i128::from(unsigned != 0),
+            NumberKind::Signed if unsigned & sign_bit != 0 => unsigned - 2 * sign_bit,
+            NumberKind::Bool => i128::from(unsigned != 0),
             _ => unsigned,
         }
     }
 
     /// Decodes a single number that fits `i64`, if this is a type of integers.
     pub fn scalar_integer(self, bytes: &[u8]) -> Option<i64> {
-        let whole = self.kind != Kind::Float && !self.big_endian && bytes.len() == self.size;
+        let whole = self.kind != NumberKind::Float && !self.big_endian && bytes.len() == self.size;
         whole.then(|| i64::try_from(self.integer(bytes)).ok()).flatten()
     }
 

@@ -8,7 +8,7 @@ use super::numbers::Dtype;
 
 /// An entry of the stack: small values themselves, others by their number.
 #[derive(Clone, Copy, Debug)]
-pub(super) enum Item {
+pub(super) enum StackItem {
     None,
     Bool(bool),
     Int(i64),
@@ -18,12 +18,12 @@ pub(super) enum Item {
 
 /// A value that the stack refers to.
 #[derive(Debug)]
-pub(super) enum Object<'a> {
+pub(super) enum PickleObject<'a> {
     Text(&'a str),
     Bytes(Cow<'a, [u8]>),
-    List(Vec<Item>),
-    Tuple(Vec<Item>),
-    Dict(Vec<(Item, Item)>),
+    List(Vec<StackItem>),
+    Tuple(Vec<StackItem>),
+    Dict(Vec<(StackItem, StackItem)>),
     Callable(Callable),
     Dtype(Dtype),
     /// `None` until its state is known.

@@ -1,12 +1,12 @@
 //! Long lists of records, one at a time: nothing of a record stays in memory once it has been handed out.
 
 use super::PickleError;
-use super::objects::{Item, Object};
-use super::stack::Machine;
+use super::objects::{PickleObject, StackItem};
+use super::stack::PickleMachine;
 use crate::limits::Limits;
 
 /// The kind of a pickle, apart from the records that were handed out.
-pub(crate) enum Root {
+pub(crate) enum PickleKind {
     /// A list of records.
     List,
     /// A dictionary with these text keys.
@@ -17,34 +17,34 @@ pub(crate) enum Root {
 
 /// A value within a record.
 #[derive(Clone, Copy)]
-pub(crate) struct Node<'m, 'a> {
-    machine: &'m Machine<'a>,
-    item: Item,
+pub(crate) struct RecordNode<'m, 'a> {
+    machine: &'m PickleMachine<'a>,
+    item: StackItem,
 }
 
-impl<'m, 'a> Node<'m, 'a> {
-    pub(super) fn new(machine: &'m Machine<'a>, item: Item) -> Self {
+impl<'m, 'a> RecordNode<'m, 'a> {
+    pub(super) fn new(machine: &'m PickleMachine<'a>, item: StackItem) -> Self {
         Self { machine, item }
     }
 
-    fn object(self) -> Option<&'m Object<'a>> {
+    fn object(self) -> Option<&'m PickleObject<'a>> {
         match self.item {
-            Item::Object(o) => self.machine.objects.get(o),
+            StackItem::Object(o) => self.machine.objects.get(o),
             _ => None,
         }
     }
 
     /// Returns whether this is a dictionary.
     pub fn is_dict(self) -> bool {
-        matches!(self.object(), Some(Object::Dict(_)))
+        matches!(self.object(), Some(PickleObject::Dict(_)))
     }
 
     /// Returns the value of a key of a dictionary.
     pub fn get(self, key: &str) -> Option<Self> {
-        let Some(Object::Dict(pairs)) = self.object() else {
+        let Some(PickleObject::Dict(pairs)) = self.object() else {
             return None;
         };
-        let named = |item: Item| matches!(Node { item, ..self }.object(), Some(Object::Text(text)) if *text == key);
+        let named = |item: StackItem| matches!(RecordNode { item, ..self }.object(), Some(PickleObject::Text(text)) if *text == key);
         let (_, item) = pairs.iter().rev().find(|(k, _)| named(*k))?;
         Some(Self { item: *item, ..self })
     }
@@ -52,7 +52,7 @@ impl<'m, 'a> Node<'m, 'a> {
     /// Returns the items of a list.
     pub fn items(self) -> Option<impl ExactSizeIterator<Item = Self>> {
         match self.object() {
-            Some(Object::List(items) | Object::Tuple(items)) => {
+            Some(PickleObject::List(items) | PickleObject::Tuple(items)) => {
                 Some(items.iter().map(move |&item| Self { item, ..self }))
             }
             _ => None,
@@ -62,9 +62,9 @@ impl<'m, 'a> Node<'m, 'a> {
     /// Returns a number; 0 or 1 for false and true.
     pub fn number(self) -> Option<f64> {
         match self.item {
-            Item::Bool(on) => Some(f64::from(u8::from(on))),
-            Item::Int(number) => Some(number as f64),
-            Item::Float(number) => Some(number),
+            StackItem::Bool(on) => Some(f64::from(u8::from(on))),
+            StackItem::Int(number) => Some(number as f64),
+            StackItem::Float(number) => Some(number),
             _ => None,
         }
     }
@@ -72,7 +72,7 @@ impl<'m, 'a> Node<'m, 'a> {
     /// Returns a text.
     pub fn text(self) -> Option<&'m str> {
         match self.object() {
-            Some(Object::Text(text)) => Some(text),
+            Some(PickleObject::Text(text)) => Some(text),
             _ => None,
         }
     }
@@ -80,7 +80,7 @@ impl<'m, 'a> Node<'m, 'a> {
     /// Returns a whole number that is not negative.
     pub fn count(self) -> Option<u64> {
         match self.item {
-            Item::Int(i) => u64::try_from(i).ok(),
+            StackItem::Int(i) => u64::try_from(i).ok(),
             _ => None,
         }
     }
@@ -93,30 +93,30 @@ impl<'m, 'a> Node<'m, 'a> {
 pub(crate) fn visit_records<E: From<PickleError>>(
     bytes: &[u8],
     limits: &Limits,
-    mut visit: impl FnMut(Node) -> Result<(), E>,
-) -> Result<Root, E> {
-    let mut machine = Machine::new(bytes, limits);
+    mut visit: impl FnMut(RecordNode) -> Result<(), E>,
+) -> Result<PickleKind, E> {
+    let mut machine = PickleMachine::new(bytes, limits);
     let mut root = None;
     while root.is_none() {
         root = machine.advance()?;
         if let Some(items) = machine.take_records() {
             for item in items {
-                visit(Node::new(&machine, item))?;
+                visit(RecordNode::new(&machine, item))?;
                 machine.release(item);
             }
         }
     }
-    let root = root.unwrap_or(Item::None);
-    Ok(match (root, Node::new(&machine, root).object()) {
-        (Item::Object(0), Some(Object::List(_))) => Root::List,
-        (_, Some(Object::Dict(pairs))) => {
-            let text = |item: &Item| match Node::new(&machine, *item).object() {
-                Some(Object::Text(text)) => Some((*text).to_string()),
+    let root = root.unwrap_or(StackItem::None);
+    Ok(match (root, RecordNode::new(&machine, root).object()) {
+        (StackItem::Object(0), Some(PickleObject::List(_))) => PickleKind::List,
+        (_, Some(PickleObject::Dict(pairs))) => {
+            let text = |item: &StackItem| match RecordNode::new(&machine, *item).object() {
+                Some(PickleObject::Text(text)) => Some((*text).to_string()),
                 _ => None,
             };
-            Root::Dict(pairs.iter().filter_map(|(key, _)| text(key)).collect())
+            PickleKind::Dict(pairs.iter().filter_map(|(key, _)| text(key)).collect())
         }
-        _ => Root::Other,
+        _ => PickleKind::Other,
     })
 }
 

@@ -5,21 +5,21 @@ use std::collections::BTreeMap;
 
 use super::PickleError;
 use super::numbers::Dtype;
-use super::objects::{Item, Object};
+use super::objects::{PickleObject, StackItem};
 use super::records::recalled;
 use crate::limits::Limits;
 
 /// The outcome of an opcode.
-pub(super) type Done = Result<(), PickleError>;
+pub(super) type OpcodeResult = Result<(), PickleError>;
 
 /// Capacity kept in the free lists: entries, and lists or dictionaries.
 const KEPT: [usize; 2] = [64, 4096];
 
 /// Room for the items of short lists and the entries of short dictionaries. Records are many and short.
 #[derive(Default)]
-struct Spare {
-    lists: Vec<Vec<Item>>,
-    dicts: Vec<Vec<(Item, Item)>>,
+struct SpareLists {
+    lists: Vec<Vec<StackItem>>,
+    dicts: Vec<Vec<(StackItem, StackItem)>>,
 }
 
 /// Empties a list and keeps its room.
@@ -31,32 +31,32 @@ fn keep<T>(spare: &mut Vec<Vec<T>>, mut list: Vec<T>) {
 }
 
 /// A pickle being read: the bytes, the stack, the memo and the objects made so far.
-pub(super) struct Machine<'a> {
+pub(super) struct PickleMachine<'a> {
     pub bytes: &'a [u8],
     pub at: usize,
     /// Where the current opcode stands.
     pub op: usize,
-    pub stack: Vec<Item>,
+    pub stack: Vec<StackItem>,
     pub marks: Vec<usize>,
-    pub objects: Vec<Object<'a>>,
+    pub objects: Vec<PickleObject<'a>>,
     pub limits: &'a Limits,
     /// Entries of the memo so far; those that are recalled, by their place.
     pub memo_length: usize,
-    memo: BTreeMap<usize, Item>,
+    memo: BTreeMap<usize, StackItem>,
     recalled: Vec<bool>,
     /// Objects in the memo, which may be referred to more than once, by their place.
     shared: Vec<bool>,
     /// Objects that are no longer used, whose places are.
     free: Vec<usize>,
     /// Room of lists and dictionaries that are no longer used.
-    spare: Spare,
+    spare: SpareLists,
     /// Objects that are yet to be released.
     releasing: Vec<usize>,
     /// The remainder of [`Limits::pickle_numbers`].
     budget: usize,
 }
 
-impl<'a> Machine<'a> {
+impl<'a> PickleMachine<'a> {
     /// Starts at the first byte of a pickle.
     pub fn new(bytes: &'a [u8], limits: &'a Limits) -> Self {
         Self {
@@ -72,7 +72,7 @@ impl<'a> Machine<'a> {
             recalled: recalled(bytes, limits),
             shared: Vec::new(),
             free: Vec::new(),
-            spare: Spare::default(),
+            spare: SpareLists::default(),
             releasing: Vec::new(),
             budget: limits.pickle_numbers,
         }
@@ -127,36 +127,38 @@ impl<'a> Machine<'a> {
 
     /// Pushes a new object.
     #[inline]
-    pub fn push(&mut self, object: Object<'a>) {
+    pub fn push(&mut self, object: PickleObject<'a>) {
         // places are used again, so that memory follows the records at hand, not the length of the log
         let place = self.free.pop().unwrap_or(self.objects.len());
         match self.objects.get_mut(place) {
             Some(old) => *old = object,
             None => self.objects.push(object),
         }
-        self.stack.push(Item::Object(place));
+        self.stack.push(StackItem::Object(place));
     }
 
     /// Takes the items so far of the list at the bottom of the stack, if the pickle is a list.
     #[inline]
-    pub fn take_records(&mut self) -> Option<Vec<Item>> {
+    pub fn take_records(&mut self) -> Option<Vec<StackItem>> {
         match (&self.stack[..], self.objects.first_mut()) {
-            ([Item::Object(0)], Some(Object::List(items))) if !items.is_empty() => Some(std::mem::take(items)),
+            ([StackItem::Object(0)], Some(PickleObject::List(items))) if !items.is_empty() => {
+                Some(std::mem::take(items))
+            }
             _ => None,
         }
     }
 
     /// Frees the places of an item that nothing refers to any more, and of its content.
-    pub fn release(&mut self, item: Item) {
+    pub fn release(&mut self, item: StackItem) {
         self.release_later(item);
         // a list of its own instead of recursion, whose depth the input would choose
         while let Some(place) = self.releasing.pop() {
-            match std::mem::replace(&mut self.objects[place], Object::List(Vec::new())) {
-                Object::List(items) | Object::Tuple(items) => {
+            match std::mem::replace(&mut self.objects[place], PickleObject::List(Vec::new())) {
+                PickleObject::List(items) | PickleObject::Tuple(items) => {
                     items.iter().for_each(|&item| self.release_later(item));
                     keep(&mut self.spare.lists, items);
                 }
-                Object::Dict(pairs) => {
+                PickleObject::Dict(pairs) => {
                     for &(key, value) in &pairs {
                         self.release_later(key);
                         self.release_later(value);
@@ -170,8 +172,8 @@ impl<'a> Machine<'a> {
     }
 
     #[inline]
-    fn release_later(&mut self, item: Item) {
-        if let Item::Object(place) = item
+    fn release_later(&mut self, item: StackItem) {
+        if let StackItem::Object(place) = item
             // the memo may still refer to it
             && !self.shared.get(place).copied().unwrap_or(false)
         {
@@ -180,19 +182,19 @@ impl<'a> Machine<'a> {
     }
 
     /// Pushes text.
-    pub fn push_text(&mut self, bytes: &'a [u8]) -> Done {
+    pub fn push_text(&mut self, bytes: &'a [u8]) -> OpcodeResult {
         let text = self.utf8(bytes)?;
-        self.push(Object::Text(text));
+        self.push(PickleObject::Text(text));
         Ok(())
     }
 
     /// Pushes bytes.
     pub fn push_bytes(&mut self, bytes: &'a [u8]) {
-        self.push(Object::Bytes(Cow::Borrowed(bytes)));
+        self.push(PickleObject::Bytes(Cow::Borrowed(bytes)));
     }
 
     /// Pops the top value above the last mark.
-    pub fn pop(&mut self) -> Result<Item, PickleError> {
+    pub fn pop(&mut self) -> Result<StackItem, PickleError> {
         if self.stack.len() <= self.marks.last().copied().unwrap_or(0) {
             return Err(self.bad("a value is missing"));
         }
@@ -200,8 +202,8 @@ impl<'a> Machine<'a> {
     }
 
     /// Pops the top `N` values, the lowest first.
-    pub fn pops<const N: usize>(&mut self) -> Result<[Item; N], PickleError> {
-        let mut out = [Item::None; N];
+    pub fn pops<const N: usize>(&mut self) -> Result<[StackItem; N], PickleError> {
+        let mut out = [StackItem::None; N];
         for slot in out.iter_mut().rev() {
             *slot = self.pop()?;
         }
@@ -209,18 +211,18 @@ impl<'a> Machine<'a> {
     }
 
     /// Pops everything above the last mark, and the mark.
-    pub fn pop_mark(&mut self) -> Result<Vec<Item>, PickleError> {
+    pub fn pop_mark(&mut self) -> Result<Vec<StackItem>, PickleError> {
         let mark = self.marks.pop().ok_or_else(|| self.bad("a mark is missing"))?;
         Ok(self.stack.split_off(mark))
     }
 
     /// Appends the items above the last mark to the list below it.
-    pub fn append_marked(&mut self) -> Done {
+    pub fn append_marked(&mut self) -> OpcodeResult {
         let (mark, list) = self.below_mark()?;
         let items = self.stack.len() - mark;
         self.spend(items)?;
         match list.and_then(|place| self.objects.get_mut(place)) {
-            Some(Object::List(list)) => {
+            Some(PickleObject::List(list)) => {
                 if list.capacity() == 0 && items <= KEPT[0] {
                     *list = self.spare.lists.pop().unwrap_or_default();
                 }
@@ -232,7 +234,7 @@ impl<'a> Machine<'a> {
     }
 
     /// Adds the keys and values above the last mark to the dictionary below it.
-    pub fn set_marked(&mut self) -> Done {
+    pub fn set_marked(&mut self) -> OpcodeResult {
         let (mark, dict) = self.below_mark()?;
         let items = self.stack.len() - mark;
         if !items.is_multiple_of(2) {
@@ -240,7 +242,7 @@ impl<'a> Machine<'a> {
         }
         self.spend(items)?;
         match dict.and_then(|place| self.objects.get_mut(place)) {
-            Some(Object::Dict(dict)) => {
+            Some(PickleObject::Dict(dict)) => {
                 if dict.capacity() == 0 && items <= KEPT[0] {
                     *dict = self.spare.dicts.pop().unwrap_or_default();
                 }
@@ -261,14 +263,14 @@ impl<'a> Machine<'a> {
             return Err(self.bad("a value is missing"));
         }
         let below = match self.stack.get(mark - 1) {
-            Some(Item::Object(place)) => Some(*place),
+            Some(StackItem::Object(place)) => Some(*place),
             _ => None,
         };
         Ok((mark, below))
     }
 
     /// Returns the top value and leaves it there.
-    pub fn top(&mut self) -> Result<Item, PickleError> {
+    pub fn top(&mut self) -> Result<StackItem, PickleError> {
         let item = self.pop()?;
         self.stack.push(item);
         Ok(item)
@@ -276,7 +278,7 @@ impl<'a> Machine<'a> {
 
     /// Remembers the top value in the memo.
     #[inline]
-    pub fn put(&mut self, index: usize) -> Done {
+    pub fn put(&mut self, index: usize) -> OpcodeResult {
         let item = self.top()?;
         // Python numbers them in turn; a far index would ask for memory that the file does not pay for
         if index > self.memo_length {
@@ -286,7 +288,7 @@ impl<'a> Machine<'a> {
         // Python writes nearly every value to the memo and recalls few of them: the others need not be kept
         if self.recalled.get(index).copied().unwrap_or(false) {
             self.memo.insert(index, item);
-            if let Item::Object(place) = item {
+            if let StackItem::Object(place) = item {
                 self.shared.resize(self.shared.len().max(place + 1), false);
                 self.shared[place] = true;
             }
@@ -296,7 +298,7 @@ impl<'a> Machine<'a> {
 
     /// Pushes a value of the memo.
     #[inline]
-    pub fn get(&mut self, index: usize) -> Done {
+    pub fn get(&mut self, index: usize) -> OpcodeResult {
         let item = self.memo.get(&index).copied();
         self.stack
             .push(item.ok_or_else(|| self.bad("the memo has no such entry"))?);
@@ -305,7 +307,7 @@ impl<'a> Machine<'a> {
 
     /// Takes numbers off the budget.
     #[inline]
-    pub fn spend(&mut self, numbers: usize) -> Done {
+    pub fn spend(&mut self, numbers: usize) -> OpcodeResult {
         let (what, limit) = ("numbers", self.limits.pickle_numbers);
         let left = self.budget.checked_sub(numbers);
         self.budget = left.ok_or(PickleError::Limit { what, limit })?;
@@ -313,10 +315,10 @@ impl<'a> Machine<'a> {
     }
 
     /// Returns an item that must be text.
-    pub fn as_text(&self, item: Item) -> Result<&'a str, PickleError> {
+    pub fn as_text(&self, item: StackItem) -> Result<&'a str, PickleError> {
         match item {
-            Item::Object(o) => match &self.objects[o] {
-                Object::Text(t) => Ok(t),
+            StackItem::Object(o) => match &self.objects[o] {
+                PickleObject::Text(t) => Ok(t),
                 _ => Err(self.bad("something other than text where text belongs")),
             },
             _ => Err(self.bad("something other than text where text belongs")),
@@ -324,10 +326,10 @@ impl<'a> Machine<'a> {
     }
 
     /// Returns an item that must be bytes.
-    pub fn as_bytes(&self, item: Item) -> Result<&[u8], PickleError> {
+    pub fn as_bytes(&self, item: StackItem) -> Result<&[u8], PickleError> {
         match item {
-            Item::Object(o) => match &self.objects[o] {
-                Object::Bytes(b) => Ok(b),
+            StackItem::Object(o) => match &self.objects[o] {
+                PickleObject::Bytes(b) => Ok(b),
                 _ => Err(self.bad("something other than bytes where bytes belong")),
             },
             _ => Err(self.bad("something other than bytes where bytes belong")),
@@ -335,10 +337,10 @@ impl<'a> Machine<'a> {
     }
 
     /// Returns an item that must be a tuple.
-    pub fn as_tuple(&self, item: Item) -> Result<&[Item], PickleError> {
+    pub fn as_tuple(&self, item: StackItem) -> Result<&[StackItem], PickleError> {
         match item {
-            Item::Object(o) => match &self.objects[o] {
-                Object::Tuple(t) => Ok(t),
+            StackItem::Object(o) => match &self.objects[o] {
+                PickleObject::Tuple(t) => Ok(t),
                 _ => Err(self.bad("something other than a tuple where a tuple belongs")),
             },
             _ => Err(self.bad("something other than a tuple where a tuple belongs")),
@@ -346,10 +348,10 @@ impl<'a> Machine<'a> {
     }
 
     /// Returns an item that must be a type of numbers.
-    pub fn as_dtype(&self, item: Item) -> Result<Dtype, PickleError> {
+    pub fn as_dtype(&self, item: StackItem) -> Result<Dtype, PickleError> {
         match item {
-            Item::Object(o) => match &self.objects[o] {
-                Object::Dtype(d) => Ok(*d),
+            StackItem::Object(o) => match &self.objects[o] {
+                PickleObject::Dtype(d) => Ok(*d),
                 _ => Err(self.bad("something other than a type of numbers where one belongs")),
             },
             _ => Err(self.bad("something other than a type of numbers where one belongs")),
@@ -357,13 +359,13 @@ impl<'a> Machine<'a> {
     }
 
     /// Returns an item that must be the shape of an array.
-    pub fn as_shape(&self, item: Item) -> Result<Vec<usize>, PickleError> {
-        let one = |item: &Item| match *item {
-            Item::Int(i) => usize::try_from(i).ok(),
+    pub fn as_shape(&self, item: StackItem) -> Result<Vec<usize>, PickleError> {
+        let one = |item: &StackItem| match *item {
+            StackItem::Int(i) => usize::try_from(i).ok(),
             _ => None,
         };
         let shape = match item {
-            Item::Int(_) => one(&item).map(|n| vec![n]),
+            StackItem::Int(_) => one(&item).map(|n| vec![n]),
             _ => match self.as_tuple(item)? {
                 dims if dims.len() > self.limits.pickle_dimensions => None,
                 dims => dims.iter().map(one).collect(),

@@ -11,7 +11,7 @@ use crate::limits::Limits;
 /// # Errors
 /// Values nested too deeply, an array whose shape does not fit its numbers.
 pub fn to_bytes(value: &Value) -> Result<Vec<u8>, PickleError> {
-    let mut writer = Writer::new();
+    let mut writer = PickleWriter::new();
     writer.value(value, 0)?;
     writer.out.push(b'.');
     Ok(writer.out)
@@ -21,7 +21,7 @@ pub fn to_bytes(value: &Value) -> Result<Vec<u8>, PickleError> {
 /// of [`to_bytes`] for the whole list, whenever one looks.
 #[derive(Clone)]
 pub(crate) struct ListWriter {
-    writer: Writer,
+    writer: PickleWriter,
     items: usize,
 }
 
@@ -31,7 +31,7 @@ const END: &[u8] = b"e.";
 impl ListWriter {
     /// Begins a list, with room for `bytes` bytes.
     pub fn with_capacity(bytes: usize) -> Self {
-        let mut writer = Writer::new();
+        let mut writer = PickleWriter::new();
         writer.out.reserve(bytes);
         writer.begin_list();
         writer.out.extend(END);
@@ -65,7 +65,7 @@ impl std::fmt::Debug for ListWriter {
 
 /// Writes the entries of a dictionary.
 pub(crate) struct DictWriter<'w> {
-    writer: &'w mut Writer,
+    writer: &'w mut PickleWriter,
 }
 
 impl DictWriter<'_> {
@@ -109,17 +109,17 @@ impl DictWriter<'_> {
 const BATCH: usize = 1000;
 
 /// Memo indices of NumPy's constructor, its array type and the type `float64`.
-type Numpy = [u32; 3];
+type NumpyMemo = [u32; 3];
 
 #[derive(Clone)]
-struct Writer {
+struct PickleWriter {
     out: Vec<u8>,
     keys: BTreeMap<Arc<str>, u32>,
-    numpy: Option<Numpy>,
+    numpy: Option<NumpyMemo>,
     memo: u32,
 }
 
-impl Writer {
+impl PickleWriter {
     fn new() -> Self {
         Self {
             out: vec![0x80, 4],

@@ -1,7 +1,7 @@
 //! Trunk, head, arms and legs, which both versions of MIMo have in common.
 
 use super::lengths::Lengths;
-use super::shapes::{Shapes, Side, long, on_x, on_z, sphere};
+use super::shapes::{BodyShapes, Side, long, on_x, on_z, sphere};
 
 /// Slack by which the edge of a rounded part lies within it, m.
 pub(super) const SLACK: f64 = 1e-4;
@@ -9,7 +9,7 @@ pub(super) const SLACK: f64 = 1e-4;
 const NECK: f64 = 2e-6;
 
 /// Lengths in which the feet and the toes of both versions are given.
-pub(super) struct Foot {
+pub(super) struct FootLengths {
     /// Ratio of the foot's length to the base's.
     pub ratio: f64,
     /// Half thickness, m.
@@ -19,9 +19,9 @@ pub(super) struct Foot {
 }
 
 /// Returns the lengths of the feet.
-pub(super) fn foot(now: &Lengths, base: &Lengths) -> Foot {
+pub(super) fn foot(now: &Lengths, base: &Lengths) -> FootLengths {
     let ratio = now.foot_length / base.foot_length;
-    Foot {
+    FootLengths {
         ratio,
         thickness: 0.01 * (now.foot_length + now.foot_breadth) / (base.foot_length + base.foot_breadth),
         ball: 0.054 * ratio,
@@ -29,7 +29,7 @@ pub(super) fn foot(now: &Lengths, base: &Lengths) -> Foot {
 }
 
 /// Adds the trunk, which follows the breadth of the hip.
-pub(super) fn trunk(now: &Lengths, base: &Lengths, out: &mut Shapes) {
+pub(super) fn trunk(now: &Lengths, base: &Lengths, out: &mut BodyShapes) {
     let h = now.hip_breadth / base.hip_breadth;
     let capsule = |radius: f64, half: f64, x: f64, z: f64| (long(radius * h, half * h), [x, 0.0, z * h]);
     out.geoms(Side::Middle, "hip", [capsule(0.048, 0.043, -0.002, 0.005)]);
@@ -59,7 +59,7 @@ pub(super) fn trunk(now: &Lengths, base: &Lengths, out: &mut Shapes) {
 }
 
 /// Adds the head with the eyes, which follow its circumference.
-pub(super) fn head(now: &Lengths, base: &Lengths, out: &mut Shapes) {
+pub(super) fn head(now: &Lengths, base: &Lengths, out: &mut BodyShapes) {
     let k = now.head_circumference / base.head_circumference;
     let radius = 0.0735 * k;
     out.geoms(Side::Middle, "head", [(sphere(radius), [0.01 * k, 0.0, radius])]);
@@ -71,11 +71,11 @@ pub(super) fn head(now: &Lengths, base: &Lengths, out: &mut Shapes) {
     );
     let (name, side) = ("vestibular", Side::Middle);
     let pos = [0.01, 0.0, radius];
-    out.sites.push(super::shapes::Place { name, side, pos });
+    out.sites.push(super::shapes::PartPosition { name, side, pos });
 }
 
 /// Adds the arms without hands. Returns the radius and half length of the forearm.
-pub(super) fn arms(now: &Lengths, base: &Lengths, out: &mut Shapes) -> (f64, f64) {
+pub(super) fn arms(now: &Lengths, base: &Lengths, out: &mut BodyShapes) -> (f64, f64) {
     let h = now.hip_breadth / base.hip_breadth;
     let bone = |l: &Lengths| l.shoulder_elbow_length - l.upper_arm_circumference;
     let upper = (
@@ -96,7 +96,7 @@ pub(super) fn arms(now: &Lengths, base: &Lengths, out: &mut Shapes) -> (f64, f64
 }
 
 /// Adds the legs with feet, without toes.
-pub(super) fn legs(now: &Lengths, base: &Lengths, foot: &Foot, out: &mut Shapes) {
+pub(super) fn legs(now: &Lengths, base: &Lengths, foot: &FootLengths, out: &mut BodyShapes) {
     let h = now.hip_breadth / base.hip_breadth;
     let bone = |l: &Lengths| l.rump_knee_length - l.thigh_circumference;
     let thigh = (

@@ -1,33 +1,33 @@
 //! Hands and toes of MIMo v2: five fingers, a big toe.
 
-use super::body::{Foot, SLACK};
+use super::body::{FootLengths, SLACK};
 use super::lengths::Lengths;
-use super::shapes::{Shapes, Side, long, on_x, on_z};
+use super::shapes::{BodyShapes, Side, long, on_x, on_z};
 
 /// A finger: the names of its bodies, and its thickness and length relative to the middle finger's.
-struct Finger {
+struct FingerShape {
     bodies: [&'static str; 3],
     thickness: f64,
     length: f64,
 }
 
-const FINGERS: [Finger; 4] = [
-    Finger {
+const FINGERS: [FingerShape; 4] = [
+    FingerShape {
         bodies: ["ffknuckle", "ffmiddle", "ffdistal"],
         thickness: 0.95,
         length: 0.9,
     },
-    Finger {
+    FingerShape {
         bodies: ["mfknuckle", "mfmiddle", "mfdistal"],
         thickness: 1.0,
         length: 1.0,
     },
-    Finger {
+    FingerShape {
         bodies: ["rfknuckle", "rfmiddle", "rfdistal"],
         thickness: 0.95,
         length: 0.9,
     },
-    Finger {
+    FingerShape {
         bodies: ["lfknuckle", "lfmiddle", "lfdistal"],
         thickness: 0.91,
         length: 0.88,
@@ -35,7 +35,7 @@ const FINGERS: [Finger; 4] = [
 ];
 
 /// Lengths of the palm, m.
-struct Palm {
+struct PalmLengths {
     thickness: f64,
     /// Half breadth of the thumb's and of the little finger's side.
     sides: (f64, f64),
@@ -45,11 +45,11 @@ struct Palm {
 }
 
 /// Adds hands and fingers at the end of a forearm of given radius and half length.
-pub(super) fn hands(now: &Lengths, base: &Lengths, forearm: (f64, f64), out: &mut Shapes) {
+pub(super) fn hands(now: &Lengths, base: &Lengths, forearm: (f64, f64), out: &mut BodyShapes) {
     let thickness = 0.00584 * (now.hand_length + now.hand_breadth) / (base.hand_length + base.hand_breadth);
     let ratio = now.hand_breadth / base.hand_breadth;
     let side = 0.01712 * ratio;
-    let palm = Palm {
+    let palm = PalmLengths {
         thickness,
         sides: (side, now.hand_breadth - side),
         half_length: now.hand_length / 2.0 - thickness,
@@ -77,7 +77,7 @@ pub(super) fn hands(now: &Lengths, base: &Lengths, forearm: (f64, f64), out: &mu
     for finger in &FINGERS {
         add_finger(finger, now.middle_finger_diameter, length, out);
     }
-    let knuckle = |finger: &Finger| a - finger.thickness * now.middle_finger_diameter - SLACK;
+    let knuckle = |finger: &FingerShape| a - finger.thickness * now.middle_finger_diameter - SLACK;
     let [first, _, ring, _] = &FINGERS;
     let knuckles = [
         ("ffknuckle", [knuckle(first), 0.0, p]),
@@ -90,7 +90,7 @@ pub(super) fn hands(now: &Lengths, base: &Lengths, forearm: (f64, f64), out: &mu
 }
 
 /// Adds the three segments of a finger, given the radius and the length of the middle finger.
-fn add_finger(finger: &Finger, radius: f64, length: f64, out: &mut Shapes) {
+fn add_finger(finger: &FingerShape, radius: f64, length: f64, out: &mut BodyShapes) {
     let [knuckle, middle, distal] = finger.bodies;
     let radius = finger.thickness * radius;
     let half = length / 2.0 * finger.length;
@@ -106,7 +106,7 @@ fn add_finger(finger: &Finger, radius: f64, length: f64, out: &mut Shapes) {
 }
 
 /// Adds the metacarpal of the little finger and the place of its knuckle.
-fn metacarpal(palm: &Palm, out: &mut Shapes) {
+fn metacarpal(palm: &PalmLengths, out: &mut BodyShapes) {
     let (a, b) = palm.sides;
     // half breadths in the original hand: 5.08 mm of the metacarpal, 5.88 mm of the palm's side
     let half = b * 508.0 / 588.0;
@@ -126,7 +126,7 @@ fn metacarpal(palm: &Palm, out: &mut Shapes) {
 }
 
 /// Adds the thumb.
-fn thumb(now: &Lengths, base: &Lengths, palm: &Palm, finger: f64, out: &mut Shapes) {
+fn thumb(now: &Lengths, base: &Lengths, palm: &PalmLengths, finger: f64, out: &mut BodyShapes) {
     let (radius, half) = (now.thumb_diameter, 0.375 * finger);
     for (body, thinner, shorter) in [("thbase", 1.0, 1.0), ("thhub", 0.95, 0.7), ("thdistal", 0.9025, 0.65)] {
         out.geoms(
@@ -152,7 +152,7 @@ fn thumb(now: &Lengths, base: &Lengths, palm: &Palm, finger: f64, out: &mut Shap
 }
 
 /// Adds the toes and the big toe.
-pub(super) fn toes(now: &Lengths, base: &Lengths, foot: &Foot, out: &mut Shapes) {
+pub(super) fn toes(now: &Lengths, base: &Lengths, foot: &FootLengths, out: &mut BodyShapes) {
     let half = 0.0095 * foot.ratio;
     let ratio = now.foot_breadth / base.foot_breadth;
     for (body, breadth, edge) in [("toes", 0.016, 0.0165), ("big_toe", 0.007, 0.0075)] {

@@ -6,7 +6,7 @@ use crate::config::Measurements;
 
 /// The conversion of a measurement to a length of a model made of radii and half lengths.
 #[derive(Clone, Copy)]
-enum Form {
+enum MeasurementKind {
     /// A circumference in cm gives a radius.
     Circumference,
     /// A length or breadth in cm gives its half.
@@ -15,7 +15,7 @@ enum Form {
     Millimetres,
 }
 
-impl Form {
+impl MeasurementKind {
     /// Converts a measurement to a radius or half length, m.
     fn length(self, measurement: f64) -> f64 {
         match self {
@@ -39,7 +39,7 @@ macro_rules! lengths {
             /// Returns the lengths at an age in months; measurements that are given replace those of the age.
             pub fn new(age: f64, given: &Measurements) -> Self {
                 Self {
-                    $($name: Form::$form.length(given.$name.unwrap_or_else(|| $a * pxfm::f_log(age + $b) + $c)),)*
+                    $($name: MeasurementKind::$form.length(given.$name.unwrap_or_else(|| $a * pxfm::f_log(age + $b) + $c)),)*
                 }
             }
         }

@@ -1,11 +1,11 @@
 //! Hands and toes of MIMo v1: a palm, all fingers as one, all toes as one.
 
-use super::body::{Foot, SLACK};
+use super::body::{FootLengths, SLACK};
 use super::lengths::Lengths;
-use super::shapes::{Shapes, Side, long, on_x, on_z};
+use super::shapes::{BodyShapes, Side, long, on_x, on_z};
 
 /// Adds hands and fingers at the end of a forearm of given radius and half length.
-pub(super) fn hands(now: &Lengths, base: &Lengths, forearm: (f64, f64), out: &mut Shapes) {
+pub(super) fn hands(now: &Lengths, base: &Lengths, forearm: (f64, f64), out: &mut BodyShapes) {
     let thickness = 0.01 * (now.hand_length + now.hand_breadth) / (base.hand_length + base.hand_breadth);
     let breadth = 0.0281 * now.fist_breadth / base.fist_breadth;
     let ratio = now.hand_length / base.hand_length;
@@ -35,7 +35,7 @@ pub(super) fn hands(now: &Lengths, base: &Lengths, forearm: (f64, f64), out: &mu
 }
 
 /// Adds the toes.
-pub(super) fn toes(now: &Lengths, foot: &Foot, out: &mut Shapes) {
+pub(super) fn toes(now: &Lengths, foot: &FootLengths, out: &mut BodyShapes) {
     let half = 0.007 * foot.ratio;
     let (breadth, thickness) = (now.foot_breadth, foot.thickness);
     let toes = [

@@ -25,7 +25,7 @@ use crate::mimo::{EYES, JOINT_PREFIX, ROOT, Version};
 use crate::mjcf_loader::Draft;
 pub(super) use blame::blame;
 use lengths::Lengths;
-use shapes::{Shapes, Side};
+use shapes::{BodyShapes, Side};
 use strength::carrier;
 
 /// Half the diameter of an eyeball of the original proportions, m: how far its camera is before its centre.
@@ -66,9 +66,9 @@ pub enum GrowthError {
 pub struct Growth {
     age: f64,
     version: Version,
-    body: Shapes,
+    body: BodyShapes,
     /// The body of the strength's age.
-    strong: Shapes,
+    strong: BodyShapes,
     camera: f64,
 }
 
@@ -190,8 +190,8 @@ impl Growth {
 }
 
 /// Returns the sizes and positions of a version of MIMo with given lengths.
-fn shapes(version: Version, now: &Lengths, base: &Lengths) -> Shapes {
-    let mut out = Shapes::default();
+fn shapes(version: Version, now: &Lengths, base: &Lengths) -> BodyShapes {
+    let mut out = BodyShapes::default();
     let foot = body::foot(now, base);
     body::trunk(now, base, &mut out);
     body::head(now, base, &mut out);
@@ -211,7 +211,7 @@ fn shapes(version: Version, now: &Lengths, base: &Lengths) -> Shapes {
 }
 
 /// Checks that every geom has a size; otherwise says which has none.
-fn check(shapes: &Shapes) -> Result<(), String> {
+fn check(shapes: &BodyShapes) -> Result<(), String> {
     for geom in &shapes.geoms {
         let gone = |s: &f64| !(s.is_finite() && *s >= 0.0);
         let axis = geom.size.iter().position(gone).or((geom.size[0] == 0.0).then_some(0));

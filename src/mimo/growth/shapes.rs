@@ -13,7 +13,7 @@ pub(super) enum Side {
 
 /// The size and the position of a geom, m.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Geom {
+pub(super) struct GeomShape {
     /// Name of its body, without `left_`.
     pub body: &'static str,
     pub side: Side,
@@ -25,7 +25,7 @@ pub(super) struct Geom {
 
 /// The position of a body, joint or site in its body, m.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Place {
+pub(super) struct PartPosition {
     /// Name, without `left_` (and, for joints, without `robot:`).
     pub name: &'static str,
     pub side: Side,
@@ -34,18 +34,18 @@ pub(super) struct Place {
 
 /// All of a body's parts that growth changes.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub(super) struct Shapes {
-    pub geoms: Vec<Geom>,
-    pub bodies: Vec<Place>,
-    pub joints: Vec<Place>,
-    pub sites: Vec<Place>,
+pub(super) struct BodyShapes {
+    pub geoms: Vec<GeomShape>,
+    pub bodies: Vec<PartPosition>,
+    pub joints: Vec<PartPosition>,
+    pub sites: Vec<PartPosition>,
 }
 
-impl Shapes {
+impl BodyShapes {
     /// Adds the geoms of a body, in order: sizes and positions.
     pub fn geoms<const N: usize>(&mut self, side: Side, body: &'static str, geoms: [(Vec3, Vec3); N]) {
         let indexed = geoms.into_iter().enumerate();
-        self.geoms.extend(indexed.map(|(index, (size, pos))| Geom {
+        self.geoms.extend(indexed.map(|(index, (size, pos))| GeomShape {
             body,
             side,
             index,
@@ -65,8 +65,10 @@ impl Shapes {
     }
 }
 
-fn places<const N: usize>(side: Side, places: [(&'static str, Vec3); N]) -> impl Iterator<Item = Place> {
-    places.into_iter().map(move |(name, pos)| Place { name, side, pos })
+fn places<const N: usize>(side: Side, places: [(&'static str, Vec3); N]) -> impl Iterator<Item = PartPosition> {
+    places
+        .into_iter()
+        .map(move |(name, pos)| PartPosition { name, side, pos })
 }
 
 /// Returns the size of a sphere.

@@ -46,7 +46,7 @@ impl Arms {
                 above || model.in_subtree(body, own)
             };
             // muscles have several blocks of numbers; actuators of other bodies are at the end
-            let own_numbers = space.len() - env.actuation().others().len().min(space.len());
+            let own_numbers = space.len() - env.actuation().extra_actuators().len().min(space.len());
             let all = (0..own_numbers).filter(|d| actuators.get(d % actuators.len().max(1)).is_some_and(|&a| moves(a)));
             all.collect()
         };

@@ -30,7 +30,7 @@ impl Movement {
 
 /// Result of one movement.
 #[derive(Clone, Debug)]
-pub(super) struct Outcome {
+pub(super) struct MovementOutcome {
     /// Joint angles before it, rad.
     pub(super) posture: Vec<f32>,
     /// Pairs of a palm and a geom that were felt.
@@ -39,13 +39,13 @@ pub(super) struct Outcome {
 
 /// The movements that promise most: for both hands together, and for each.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Choice {
+pub(super) struct BestMovements {
     pub(super) both: Option<usize>,
     pub(super) hands: [Option<usize>; 2],
     promises: [f64; 2],
 }
 
-impl Choice {
+impl BestMovements {
     /// Returns the movement that promises more of those for one hand.
     pub(super) fn lead(&self) -> Option<usize> {
         let [right, left] = self.promises;
@@ -55,11 +55,11 @@ impl Choice {
 
 /// All movements that led to a touch, each with its last outcomes.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Memory {
-    movements: Vec<(Movement, Vec<Outcome>)>,
+pub(super) struct MovementMemory {
+    movements: Vec<(Movement, Vec<MovementOutcome>)>,
 }
 
-impl Memory {
+impl MovementMemory {
     pub(super) fn len(&self) -> usize {
         self.movements.len()
     }
@@ -69,7 +69,7 @@ impl Memory {
     }
 
     /// Adds a movement. If the memory is full, it replaces a random one that was not repeated.
-    pub(super) fn add(&mut self, movement: Movement, outcome: Outcome, rng: &mut NumpyRng) {
+    pub(super) fn add(&mut self, movement: Movement, outcome: MovementOutcome, rng: &mut NumpyRng) {
         let entry = (movement, vec![outcome]);
         if self.movements.len() < MOVEMENTS {
             return self.movements.push(entry);
@@ -79,7 +79,7 @@ impl Memory {
         self.movements[once.unwrap_or(places[0])] = entry;
     }
 
-    pub(super) fn add_outcome(&mut self, index: usize, outcome: Outcome) {
+    pub(super) fn add_outcome(&mut self, index: usize, outcome: MovementOutcome) {
         let outcomes = &mut self.movements[index].1;
         if outcomes.len() == OUTCOMES {
             outcomes.remove(0);
@@ -91,8 +91,8 @@ impl Memory {
     ///
     /// The promise of a movement is the mean worth of its outcomes, weighted by how near their postures are, over the square root of its
     /// time: long movements touch more, but not in proportion.
-    pub(super) fn best(&self, posture: &[f32], worth: impl Fn(u32) -> (usize, f64)) -> Choice {
-        let mut choice = Choice::default();
+    pub(super) fn best(&self, posture: &[f32], worth: impl Fn(u32) -> (usize, f64)) -> BestMovements {
+        let mut choice = BestMovements::default();
         let mut most = 0.0;
         for (index, (movement, outcomes)) in self.movements.iter().enumerate() {
             let (mut sums, mut weights) = ([0.0; 2], DOUBT);
@@ -130,18 +130,18 @@ fn nearness(a: &[f32], b: &[f32]) -> f64 {
 mod tests {
     use super::*;
 
-    fn outcome(angle: f32, felt: &[u32]) -> Outcome {
+    fn outcome(angle: f32, felt: &[u32]) -> MovementOutcome {
         let (posture, felt) = (vec![angle], felt.to_vec());
-        Outcome { posture, felt }
+        MovementOutcome { posture, felt }
     }
 
     #[test]
     fn what_works_here_is_chosen_here() {
-        let (mut memory, mut rng) = (Memory::default(), NumpyRng::seed(0));
+        let (mut memory, mut rng) = (MovementMemory::default(), NumpyRng::seed(0));
         for (angle, pair) in [(0.0, 0), (1.0, 1)] {
             memory.add(Movement::rest(1, 10), outcome(angle, &[pair]), &mut rng);
         }
-        let at = |memory: &Memory, angle| memory.best(&[angle], |pair| (pair as usize, 1.0));
+        let at = |memory: &MovementMemory, angle| memory.best(&[angle], |pair| (pair as usize, 1.0));
         assert_eq!(at(&memory, 0.1).both, Some(0));
         assert_eq!(at(&memory, 0.9).both, Some(1));
         assert_eq!(at(&memory, 0.9).hands, [Some(0), Some(1)]);
@@ -156,7 +156,7 @@ mod tests {
 
     #[test]
     fn memory_is_bounded() {
-        let (mut memory, mut rng) = (Memory::default(), NumpyRng::seed(0));
+        let (mut memory, mut rng) = (MovementMemory::default(), NumpyRng::seed(0));
         for k in 0..MOVEMENTS as u32 + 100 {
             memory.add(Movement::rest(1, k), outcome(0.0, &[0]), &mut rng);
         }

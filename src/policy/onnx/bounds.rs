@@ -6,7 +6,7 @@
 
 use std::collections::BTreeMap;
 
-use super::constants::{LIST, Numbers, name, of_attribute, of_constant, of_tensor, parts};
+use super::constants::{LIST, ShortTensor, name, of_attribute, of_constant, of_tensor, parts};
 use super::{runtime, wire};
 
 /// Greatest number of values that one operator may make.
@@ -83,9 +83,9 @@ fn check_factors(node: &[u8], factors: &[f64]) -> Result<(), String> {
 }
 
 /// Checks a row of numbers from a start to a limit: how many there are, and that each step gets it further.
-fn check_range([start, limit, step]: [Option<&Numbers>; 3]) -> Result<(), String> {
+fn check_range([start, limit, step]: [Option<&ShortTensor>; 3]) -> Result<(), String> {
     let Some(limit) = limit else { return Ok(()) };
-    let one = |numbers: Option<&Numbers>, or| numbers.and_then(|n| n.values.first().copied()).unwrap_or(or);
+    let one = |numbers: Option<&ShortTensor>, or| numbers.and_then(|n| n.values.first().copied()).unwrap_or(or);
     let (from, to, by) = (one(start, 0.0), one(Some(limit), 0.0), one(step, 1.0));
     let count = (to - from) / by;
     // whole numbers of 32 bits end, and floats of 32 bits get no further where a step is less than their last bit
@@ -103,7 +103,7 @@ fn check_range([start, limit, step]: [Option<&Numbers>; 3]) -> Result<(), String
 }
 
 /// Constants by name: of a graph, after those of the graphs around it.
-type Constants<'m> = Vec<BTreeMap<&'m [u8], Numbers>>;
+type ConstantScopes<'m> = Vec<BTreeMap<&'m [u8], ShortTensor>>;
 
 /// Checks the bytes of a model and the sizes in it, and returns the number of operators in its graph; the error says which operator makes too much.
 pub(super) fn check(model: &[u8]) -> Result<usize, String> {
@@ -118,7 +118,7 @@ pub(super) fn check(model: &[u8]) -> Result<usize, String> {
 }
 
 /// Checks a graph within a limit of operators, and those in its operators; how deep they are was checked before.
-fn check_graph<'m>(graph: &'m [u8], most: usize, constants: &mut Constants<'m>) -> Result<(), String> {
+fn check_graph<'m>(graph: &'m [u8], most: usize, constants: &mut ConstantScopes<'m>) -> Result<(), String> {
     let nodes = parts(graph, 1);
     // there is an entry for each graph around it
     if constants.len() > NESTED {
@@ -167,7 +167,7 @@ fn passes_on(node: &[u8]) -> bool {
 }
 
 /// Checks the sizes that an operator is given.
-fn check_inputs(node: &[u8], constants: &Constants<'_>) -> Result<(), String> {
+fn check_inputs(node: &[u8], constants: &ConstantScopes<'_>) -> Result<(), String> {
     let names = parts(node, 1);
     let input = |k: usize| {
         let name = names.get(k)?;

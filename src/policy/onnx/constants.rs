@@ -1,37 +1,37 @@
 //! Constants in a model: tensors and attributes of operators (`onnx.proto`: `TensorProto`, `AttributeProto`).
 
-use super::wire::{self, Field, varint};
+use super::wire::{self, WireField, varint};
 
 /// Longest list of sizes.
 pub(super) const LIST: usize = 64;
 
 /// A short list of numbers of a model.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Numbers {
+pub(super) struct ShortTensor {
     pub(super) values: Vec<f64>,
     /// Whether their type is a whole number.
     pub(super) whole: bool,
 }
 
 /// Lists the fields of a message that was looked through.
-pub(super) fn fields(bytes: &[u8]) -> Vec<(u64, Field<'_>)> {
+pub(super) fn fields(bytes: &[u8]) -> Vec<(u64, WireField<'_>)> {
     wire::fields(bytes).unwrap_or_default()
 }
 
 /// Lists the messages, texts or bytes in a field.
 pub(super) fn parts(bytes: &[u8], number: u64) -> Vec<&[u8]> {
     let one = |(n, field)| match field {
-        Field::Bytes(data) if n == number => Some(data),
+        WireField::Bytes(data) if n == number => Some(data),
         _ => None,
     };
     fields(bytes).into_iter().filter_map(one).collect()
 }
 
 /// Appends whole numbers of variable length: one, or those packed in bytes.
-fn whole(field: Field<'_>, out: &mut Vec<f64>) {
+fn whole(field: WireField<'_>, out: &mut Vec<f64>) {
     match field {
-        Field::Number(value) => out.push(value as i64 as f64),
-        Field::Bytes(mut packed) => {
+        WireField::Number(value) => out.push(value as i64 as f64),
+        WireField::Bytes(mut packed) => {
             while let Some(value) = varint(&mut packed) {
                 out.push(value as i64 as f64);
             }
@@ -56,15 +56,15 @@ fn doubles(bytes: &[u8], out: &mut Vec<f64>) {
 }
 
 /// Returns the numbers of a tensor, if it holds a short list of `float`, `double`, `int32` or `int64`.
-pub(super) fn of_tensor(tensor: &[u8]) -> Option<Numbers> {
+pub(super) fn of_tensor(tensor: &[u8]) -> Option<ShortTensor> {
     let (mut values, mut raw, mut kind) = (Vec::new(), &[][..], 0);
     for (number, field) in fields(tensor) {
         match (number, field) {
-            (2, Field::Number(found)) => kind = found,
-            (4, Field::Bytes(data)) => floats(data, &mut values),
+            (2, WireField::Number(found)) => kind = found,
+            (4, WireField::Bytes(data)) => floats(data, &mut values),
             (5 | 7, field) => whole(field, &mut values),
-            (9, Field::Bytes(data)) => raw = data,
-            (10, Field::Bytes(data)) => doubles(data, &mut values),
+            (9, WireField::Bytes(data)) => raw = data,
+            (10, WireField::Bytes(data)) => doubles(data, &mut values),
             _ => {}
         }
     }
@@ -76,7 +76,7 @@ pub(super) fn of_tensor(tensor: &[u8]) -> Option<Numbers> {
         _ => return None,
     }
     let whole = kind == 6 || kind == 7;
-    (values.len() <= LIST).then_some(Numbers { values, whole })
+    (values.len() <= LIST).then_some(ShortTensor { values, whole })
 }
 
 /// Returns the name of an attribute of an operator.
@@ -86,11 +86,11 @@ pub(super) fn name(attribute: &[u8]) -> &str {
 }
 
 /// Returns the numbers of an attribute that are not in a tensor.
-pub(super) fn of_attribute(attribute: &[u8]) -> Numbers {
+pub(super) fn of_attribute(attribute: &[u8]) -> ShortTensor {
     let (mut values, mut is_whole) = (Vec::new(), true);
     for (number, field) in fields(attribute) {
         match (number, field) {
-            (2 | 7, Field::Bytes(data)) => {
+            (2 | 7, WireField::Bytes(data)) => {
                 is_whole = false;
                 floats(data, &mut values);
             }
@@ -99,11 +99,11 @@ pub(super) fn of_attribute(attribute: &[u8]) -> Numbers {
         }
     }
     let whole = is_whole;
-    Numbers { values, whole }
+    ShortTensor { values, whole }
 }
 
 /// Returns the output of an operator without inputs, if it is a short list of numbers: the value of a `Constant`.
-pub(super) fn of_constant(node: &[u8]) -> Option<Numbers> {
+pub(super) fn of_constant(node: &[u8]) -> Option<ShortTensor> {
     if parts(node, 4).first().copied() != Some(b"Constant") {
         return None;
     }

@@ -7,14 +7,14 @@
 const DEPTH: usize = 64;
 
 /// A field of a message: its number, or its bytes.
-pub(super) enum Field<'a> {
+pub(super) enum WireField<'a> {
     Number(u64),
     Bytes(&'a [u8]),
 }
 
 /// The types of messages that the runtime reads.
 #[derive(Clone, Copy)]
-enum Message {
+enum MessageType {
     Model,
     Graph,
     Node,
@@ -30,18 +30,18 @@ enum Message {
 }
 
 /// The content of a field's bytes.
-enum Content {
-    Message(Message),
+enum FieldContent {
+    Message(MessageType),
     /// Numbers of variable length, one after the other.
     Numbers,
     /// Text, or bytes that the runtime does not parse.
     Other,
 }
 
-impl Message {
+impl MessageType {
     /// Returns the content of a field's bytes.
-    fn content(self, field: u64) -> Content {
-        Content::Message(match (self, field) {
+    fn content(self, field: u64) -> FieldContent {
+        FieldContent::Message(match (self, field) {
             (Self::Model, 7) | (Self::Attribute, 6) => Self::Graph,
             (Self::Graph, 1) => Self::Node,
             (Self::Node, 5) => Self::Attribute,
@@ -52,8 +52,8 @@ impl Message {
             (Self::Type, 4) => Self::Sequence,
             (Self::TensorType, 2) => Self::Shape,
             (Self::Model, 8 | 14) | (Self::Tensor, 13) | (Self::Shape, 1) => Self::Plain,
-            (Self::Attribute, 8) | (Self::Tensor, 1 | 5 | 7) => return Content::Numbers,
-            _ => return Content::Other,
+            (Self::Attribute, 8) | (Self::Tensor, 1 | 5 | 7) => return FieldContent::Numbers,
+            _ => return FieldContent::Other,
         })
     }
 }
@@ -73,13 +73,13 @@ pub(super) fn varint(bytes: &mut &[u8]) -> Option<u64> {
 }
 
 /// Lists the fields of a message, unless it is malformed.
-pub(super) fn fields(mut bytes: &[u8]) -> Option<Vec<(u64, Field<'_>)>> {
+pub(super) fn fields(mut bytes: &[u8]) -> Option<Vec<(u64, WireField<'_>)>> {
     let mut out = Vec::new();
     while !bytes.is_empty() {
         let key = varint(&mut bytes)?;
         let length = match key & 7 {
             0 => {
-                out.push((key >> 3, Field::Number(varint(&mut bytes)?)));
+                out.push((key >> 3, WireField::Number(varint(&mut bytes)?)));
                 continue;
             }
             1 => 8,
@@ -88,7 +88,7 @@ pub(super) fn fields(mut bytes: &[u8]) -> Option<Vec<(u64, Field<'_>)>> {
             _ => return None,
         };
         let (data, rest) = bytes.split_at_checked(length)?;
-        out.push((key >> 3, Field::Bytes(data)));
+        out.push((key >> 3, WireField::Bytes(data)));
         bytes = rest;
     }
     Some(out)
@@ -96,25 +96,25 @@ pub(super) fn fields(mut bytes: &[u8]) -> Option<Vec<(u64, Field<'_>)>> {
 
 /// Checks the bytes of a model; the error describes the fault.
 pub(super) fn check(model: &[u8]) -> Result<(), String> {
-    walk(model, Message::Model, DEPTH)
+    walk(model, MessageType::Model, DEPTH)
 }
 
-fn walk(bytes: &[u8], message: Message, depth: usize) -> Result<(), String> {
+fn walk(bytes: &[u8], message: MessageType, depth: usize) -> Result<(), String> {
     let malformed = || "it is damaged, or no ONNX model: its bytes are not protobuf".to_string();
     let Some(depth) = depth.checked_sub(1) else {
         return Err(format!("it has more than {DEPTH} levels of messages in messages"));
     };
     for (number, field) in fields(bytes).ok_or_else(malformed)? {
-        let Field::Bytes(data) = field else { continue };
+        let WireField::Bytes(data) = field else { continue };
         match message.content(number) {
-            Content::Message(inside) => walk(data, inside, depth)?,
-            Content::Numbers => {
+            FieldContent::Message(inside) => walk(data, inside, depth)?,
+            FieldContent::Numbers => {
                 let mut rest = data;
                 while !rest.is_empty() {
                     varint(&mut rest).ok_or_else(malformed)?;
                 }
             }
-            Content::Other => {}
+            FieldContent::Other => {}
         }
     }
     Ok(())

@@ -1,6 +1,6 @@
 //! The postures in which hands were seen best, and what is tried next.
 
-use super::limbs::{HANDS, Limb, Limbs};
+use super::limbs::{DrivenJoints, DrivenPart, HANDS};
 use crate::spaces::NumpyRng;
 
 /// Number of postures that are kept for each hand, and for both together.
@@ -45,12 +45,12 @@ impl Trial {
 
 /// The best trials: for each hand, then for both, the best ones first.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Archive {
+pub(super) struct TrialArchive {
     hands: [Vec<Trial>; HANDS],
     both: Vec<Trial>,
 }
 
-impl Archive {
+impl TrialArchive {
     /// Returns the best trial for both hands.
     pub(super) fn best(&self) -> Option<&Trial> {
         self.both.first()
@@ -70,7 +70,7 @@ impl Archive {
     }
 
     /// Returns the posture of the next trial. `random` is the share of new random ones.
-    pub(super) fn propose(&self, limbs: &Limbs, rng: &mut NumpyRng, random: f64) -> Vec<f64> {
+    pub(super) fn propose(&self, limbs: &DrivenJoints, rng: &mut NumpyRng, random: f64) -> Vec<f64> {
         let chance = rng.uniform();
         if let Some(best) = self.best().filter(|_| chance < AGAIN) {
             return best.posture.clone();
@@ -96,7 +96,7 @@ impl Archive {
         let deviation = VARIATIONS[rng.below(VARIATIONS.len())];
         for (k, limb) in limbs.limbs().enumerate() {
             let parent = match limb {
-                Limb::Head => head,
+                DrivenPart::Head => head,
                 // an arm whose hand was not seen gets a new random posture
                 _ => limb
                     .hand()
@@ -129,7 +129,7 @@ mod tests {
 
     #[test]
     fn what_is_not_seen_again_falls_back() {
-        let mut archive = Archive::default();
+        let mut archive = TrialArchive::default();
         archive.add(Trial::new(vec![0.0], [0.0, 0.9]));
         archive.add(Trial::new(vec![1.0], [0.3, 0.4]));
         assert_eq!(archive.best().map(|t| &t.posture[..]), Some(&[0.0][..]));

@@ -3,7 +3,7 @@
 use crate::config::ActuationModel;
 use crate::env::Env;
 use crate::policy::PolicyError;
-use crate::sensors::Component;
+use crate::sensors::ProprioceptionComponent;
 use crate::spaces::{BoxSpace, NumpyRng};
 
 /// Number of hands: right, left.
@@ -17,7 +17,7 @@ const RATE: f64 = 4.0;
 
 /// The effect of a number of an action.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Limb {
+pub(super) enum DrivenPart {
     /// The arm of a hand: the joints above its palm.
     Arm(usize),
     /// The wrist of a hand, which moves the palm alone.
@@ -28,7 +28,7 @@ pub(super) enum Limb {
     Other,
 }
 
-impl Limb {
+impl DrivenPart {
     /// Returns the hand that it moves.
     pub(super) fn hand(self) -> Option<usize> {
         match self {
@@ -40,8 +40,8 @@ impl Limb {
 
 /// A joint and the actuator that moves it.
 #[derive(Clone, Debug)]
-struct Drive {
-    limb: Limb,
+struct DrivenJoint {
+    limb: DrivenPart,
     /// Indices of its angle and its velocity in proprioception.
     angle: usize,
     velocity: Option<usize>,
@@ -51,13 +51,13 @@ struct Drive {
 
 /// The joints that an action moves, in its order.
 #[derive(Clone, Debug)]
-pub(super) struct Limbs {
-    drives: Vec<Drive>,
+pub(super) struct DrivenJoints {
+    drives: Vec<DrivenJoint>,
     space: BoxSpace,
     kind: ActuationModel,
 }
 
-impl Limbs {
+impl DrivenJoints {
     /// Finds the limbs of an environment's MIMo.
     pub(super) fn new(env: &Env) -> Result<Self, PolicyError> {
         let model = env.model();
@@ -72,15 +72,15 @@ impl Limbs {
             if model.in_subtree(moved, head)
                 || model.in_subtree(head, moved) && model.in_subtree(moved, trunk) && moved != trunk
             {
-                return Limb::Head;
+                return DrivenPart::Head;
             }
             let of = |hand: &usize| {
                 moved != trunk && model.in_subtree(moved, trunk) && model.in_subtree(palms[*hand], moved)
             };
             match (0..HANDS).find(of) {
-                Some(hand) if moved == palms[hand] => Limb::Wrist(hand),
-                Some(hand) => Limb::Arm(hand),
-                None => Limb::Other,
+                Some(hand) if moved == palms[hand] => DrivenPart::Wrist(hand),
+                Some(hand) => DrivenPart::Arm(hand),
+                None => DrivenPart::Other,
             }
         };
         let senses = env.senses().proprioception();
@@ -88,19 +88,19 @@ impl Limbs {
             let joint = model.actuator_trnid[actuator];
             let name = model.jnt_name.get(joint)?;
             let place = |component| senses.find(model, component, name).map(|range| range.start);
-            Some(Drive {
+            Some(DrivenJoint {
                 limb: limb(model.jnt_bodyid[joint]),
-                angle: place(Component::Angles)?,
-                velocity: place(Component::Velocities),
+                angle: place(ProprioceptionComponent::Angles)?,
+                velocity: place(ProprioceptionComponent::Velocities),
                 range: model.jnt_range[joint],
             })
         };
-        let drives: Option<Vec<Drive>> = env.actuation().actuators().iter().map(drive).collect();
+        let drives: Option<Vec<DrivenJoint>> = env.actuation().actuators().iter().map(drive).collect();
         let drives =
             drives.ok_or_else(|| PolicyError::Other("watching needs to feel all joints that it moves".into()))?;
         for hand in 0..HANDS {
-            let moves = |limb: Limb| drives.iter().any(|drive| drive.limb == limb);
-            if !moves(Limb::Arm(hand)) || !moves(Limb::Wrist(hand)) {
+            let moves = |limb: DrivenPart| drives.iter().any(|drive| drive.limb == limb);
+            if !moves(DrivenPart::Arm(hand)) || !moves(DrivenPart::Wrist(hand)) {
                 return Err(PolicyError::Other(
                     "watching moves arms and wrists: set act_arms: true, act_hands: true".into(),
                 ));
@@ -129,16 +129,16 @@ impl Limbs {
     }
 
     /// Returns the limb of each number of a posture.
-    pub(super) fn limbs(&self) -> impl Iterator<Item = Limb> {
+    pub(super) fn limbs(&self) -> impl Iterator<Item = DrivenPart> {
         self.drives.iter().map(|drive| drive.limb)
     }
 
     /// Draws a posture; limbs that do not bring hands before eyes are in the middle of their ranges.
     pub(super) fn random(&self, rng: &mut NumpyRng) -> Vec<f64> {
-        let angle = |drive: &Drive| {
+        let angle = |drive: &DrivenJoint| {
             let [low, high] = drive.range;
             match drive.limb {
-                Limb::Other => low.max(0.0_f64.min(high)),
+                DrivenPart::Other => low.max(0.0_f64.min(high)),
                 _ => rng.uniform_in(low, high),
             }
         };
@@ -154,7 +154,7 @@ impl Limbs {
     /// Iterates over the angles of the joints that turn the eyes: those of the neck, and their own.
     pub(super) fn gaze<'a>(&'a self, env: &'a Env) -> impl Iterator<Item = f64> + 'a {
         let felt = env.observation().proprioception;
-        let turning = self.drives.iter().filter(|drive| drive.limb == Limb::Head);
+        let turning = self.drives.iter().filter(|drive| drive.limb == DrivenPart::Head);
         turning.map(move |drive| felt.get(drive.angle).copied().unwrap_or_default())
     }
 
@@ -167,7 +167,7 @@ impl Limbs {
         action.clear();
         action.resize(self.space.len(), 0.0);
         for (k, (drive, &goal)) in self.drives.iter().zip(posture).enumerate() {
-            let moved = matches!(drive.limb, Limb::Wrist(own) if Some(own) == hand);
+            let moved = matches!(drive.limb, DrivenPart::Wrist(own) if Some(own) == hand);
             let goal = if moved { goal + swing } else { goal };
             let off = STIFFNESS * (goal - number(drive.angle));
             let effort = off - DAMPING * drive.velocity.map_or(0.0, number);

@@ -22,7 +22,7 @@ const APART: f64 = 0.03;
 
 /// The observations of a trial.
 #[derive(Clone, Debug)]
-pub(super) struct Sight {
+pub(super) struct ImageChanges {
     /// For each hand, eye and pixel the sum of the changes while that hand moved.
     changes: Vec<f32>,
     /// The pictures with which the next ones are compared, in shades of grey.
@@ -38,7 +38,7 @@ pub(super) struct Sight {
     since: u32,
 }
 
-impl Sight {
+impl ImageChanges {
     /// Reserves the pictures of an environment.
     pub(super) fn new(env: &Env) -> Result<Self, PolicyError> {
         let seen = env.observation();

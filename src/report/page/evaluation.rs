@@ -6,12 +6,12 @@ use super::{embed, grouped, percent, step_time};
 use crate::config::{Behavior, Compat};
 use crate::env::{BehaviorInfo, EYE_HAND_PAIRS, Info, Outcome, PartNames};
 use crate::eval::Score;
-use crate::report::run::{Evaluated, Run};
+use crate::report::run::{EvaluationEpisode, RunContents};
 use crate::report::strip::{frames, moments};
 
 /// The counters of a single evaluation episode. Under `compat: reference` counters and lists continue from episode to episode.
 #[derive(Default)]
-struct Alone {
+struct EpisodeCounters {
     /// Parts that each hand touched; only new ones if lists continue.
     parts: Option<[usize; 2]>,
     /// Steps with a hand in view.
@@ -21,9 +21,9 @@ struct Alone {
 }
 
 /// Returns the counters of a single episode. `before` is the end of the previous one.
-fn alone(evaluated: &Evaluated, before: Option<&Info>) -> Alone {
+fn alone(evaluated: &EvaluationEpisode, before: Option<&Info>) -> EpisodeCounters {
     let (Some(first), Some(last)) = (evaluated.log.info.first(), evaluated.log.info.last()) else {
-        return Alone::default();
+        return EpisodeCounters::default();
     };
     let steps = evaluated.log.len() as u64;
     if let (Some(start), Some(end)) = (first.behavior.touches(), last.behavior.touches()) {
@@ -33,16 +33,16 @@ fn alone(evaluated: &Evaluated, before: Option<&Info>) -> Alone {
         let old = old.map_or([0; 2], |old| old.map(<[usize]>::len));
         let parts = std::array::from_fn(|hand| end[hand].len().saturating_sub(old[hand]));
         let score = Score::of_episode(last, steps).filter(|_| old == [0; 2]);
-        return Alone {
+        return EpisodeCounters {
             parts: Some(parts),
             score,
-            ..Alone::default()
+            ..EpisodeCounters::default()
         };
     }
     let Some((start, end)) = first.behavior.regards().zip(last.behavior.regards()) else {
-        return Alone {
+        return EpisodeCounters {
             score: Score::of_episode(last, steps),
-            ..Alone::default()
+            ..EpisodeCounters::default()
         };
     };
     // in one step a counter grows by one at most
@@ -58,17 +58,17 @@ fn alone(evaluated: &Evaluated, before: Option<&Info>) -> Alone {
     };
     let counts: [u64; 4] = std::array::from_fn(|k| end[k].saturating_sub(old[k]));
     let behavior = BehaviorInfo::HandRegard { counts: counts.into() };
-    Alone {
+    EpisodeCounters {
         counts: Some(counts),
         score: behavior.score(steps),
-        ..Alone::default()
+        ..EpisodeCounters::default()
     }
 }
 
 /// Returns the counters of each episode.
-fn all_alone(run: &Run) -> Vec<Alone> {
+fn all_alone(run: &RunContents) -> Vec<EpisodeCounters> {
     let goes_on = run.compat() == Compat::Reference;
-    let mut before: Option<&Evaluated> = None;
+    let mut before: Option<&EvaluationEpisode> = None;
     let each = run.evaluations.iter().map(|evaluated| {
         let last = before.replace(evaluated);
         let last = last.filter(|last| goes_on && last.episode.checked_add(1) == Some(evaluated.episode));
@@ -78,7 +78,7 @@ fn all_alone(run: &Run) -> Vec<Alone> {
 }
 
 /// Draws the section: key frames of the best episode with a video, and a table of all.
-pub(super) fn evaluation_section(run: &mut Run) -> Markup {
+pub(super) fn evaluation_section(run: &mut RunContents) -> Markup {
     if run.evaluations.is_empty() {
         return html! {};
     }
@@ -118,7 +118,7 @@ pub(super) fn evaluation_section(run: &mut Run) -> Markup {
 }
 
 /// Draws key frames of a video.
-fn strip(run: &Run, evaluated: &Evaluated) -> std::io::Result<Markup> {
+fn strip(run: &RunContents, evaluated: &EvaluationEpisode) -> std::io::Result<Markup> {
     let Some(path) = &evaluated.video else {
         return Ok(html! {});
     };
@@ -162,10 +162,10 @@ fn outcome(outcome: &Outcome) -> &'static str {
 }
 
 /// Draws the table of all episodes.
-fn evaluation_table(run: &Run, counted: &[Alone]) -> Markup {
+fn evaluation_table(run: &RunContents, counted: &[EpisodeCounters]) -> Markup {
     let touch = run.behavior == Behavior::SelfTouch;
     let regard = run.behavior == Behavior::HandRegard;
-    let of_task = |e: &Evaluated| e.log.info.last().is_some_and(|info| info.behavior.task().is_some());
+    let of_task = |e: &EvaluationEpisode| e.log.info.last().is_some_and(|info| info.behavior.task().is_some());
     let task = run.evaluations.iter().any(of_task);
     html! {
         div.scroll { table {

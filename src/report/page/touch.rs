@@ -4,11 +4,11 @@ use maud::{Markup, html};
 
 use super::{HANDS, embed, percent};
 use crate::assets::{DirAssets, Overlay};
-use crate::eval::Touchables;
+use crate::eval::TouchableGeoms;
 use crate::mimo::embedded;
 use crate::model::Model;
-use crate::report::doll::{self, Doll, Side};
-use crate::report::run::Run;
+use crate::report::doll::{self, Doll, DollSide};
+use crate::report::run::RunContents;
 
 /// Parts that the hand touches least are this far between no colour and the full one.
 const FAINT: f32 = 0.3;
@@ -20,12 +20,12 @@ const OUT_OF_REACH: [f32; 3] = [0.72, 0.73, 0.76];
 const PALM: [f32; 3] = [0.25, 0.28, 0.34];
 
 /// For each hand the geoms that it touched, with the share of episodes in which it did.
-type Touched = [Vec<(usize, f64)>; 2];
+type TouchedGeoms = [Vec<(usize, f64)>; 2];
 /// A geom, and for each hand the share of episodes in which it touched that.
-type Share = (usize, [f64; 2]);
+type TouchShare = (usize, [f64; 2]);
 
 /// Draws the section: MIMo with touched parts in colour, and a table of the parts.
-pub(super) fn touch_section(run: &mut Run) -> Markup {
+pub(super) fn touch_section(run: &mut RunContents) -> Markup {
     let touched = run.touched();
     let (Some(model), Some(touchables)) = (&run.model, &run.touchables) else {
         run.notices
@@ -63,14 +63,14 @@ pub(super) fn touch_section(run: &mut Run) -> Markup {
 }
 
 /// Draws MIMo from both sides for each hand.
-fn dolls(run: &Run, model: &Model, touchables: &Touchables, touched: &Touched) -> Markup {
+fn dolls(run: &RunContents, model: &Model, touchables: &TouchableGeoms, touched: &TouchedGeoms) -> Markup {
     let assets = DirAssets::new(&run.dir).ok();
     let mut doll = match assets {
         Some(assets) => Doll::new(model, &Overlay::new(embedded()).with(assets)),
         None => Doll::new(model, &embedded()),
     };
     let palms = ["right_hand", "left_hand"].map(|name| model.body(name));
-    let mut picture = |hand: usize, side: Side| -> Option<String> {
+    let mut picture = |hand: usize, side: DollSide| -> Option<String> {
         let color = |g: usize| {
             if Some(model.geom_bodyid[g]) == palms[hand] {
                 return PALM;
@@ -83,7 +83,7 @@ fn dolls(run: &Run, model: &Model, touchables: &Touchables, touched: &Touched) -
         };
         Some(embed("png", &doll.as_mut()?.draw(side, &color)?))
     };
-    let pictures = [0, 1].map(|hand| [Side::Front, Side::Back].map(|side| (side, picture(hand, side))));
+    let pictures = [0, 1].map(|hand| [DollSide::Front, DollSide::Back].map(|side| (side, picture(hand, side))));
     html! {
         div.dolls {
             @for (hand, sides) in pictures.iter().enumerate() {
@@ -93,7 +93,7 @@ fn dolls(run: &Run, model: &Model, touchables: &Touchables, touched: &Touched) -
                             @if let Some(picture) = picture {
                                 img src=(picture) width=(doll::WIDTH) height=(doll::HEIGHT)
                                     alt=(format!("MIMo from the {}, parts touched by the {} in colour",
-                                        if *side == Side::Front { "front" } else { "back" }, HANDS[hand].0));
+                                        if *side == DollSide::Front { "front" } else { "back" }, HANDS[hand].0));
                             }
                         }
                     }
@@ -108,12 +108,12 @@ fn dolls(run: &Run, model: &Model, touchables: &Touchables, touched: &Touched) -
 }
 
 /// Returns the parts in reach of a hand, those touched most often first, and those that no hand has touched.
-fn parts(model: &Model, touchables: &Touchables, touched: &Touched) -> (Vec<Share>, Vec<Share>) {
+fn parts(model: &Model, touchables: &TouchableGeoms, touched: &TouchedGeoms) -> (Vec<TouchShare>, Vec<TouchShare>) {
     let share = |g: usize, hand: usize| {
         let found = touched[hand].iter().find(|(t, _)| *t == g);
         found.map_or(0.0, |(_, share)| *share)
     };
-    let mut parts: Vec<Share> = (0..model.ngeom())
+    let mut parts: Vec<TouchShare> = (0..model.ngeom())
         .filter(|g| [0, 1].iter().any(|&hand| touchables.reachable(hand).contains(g)))
         .map(|g| (g, [0, 1].map(|hand| share(g, hand))))
         .collect();
@@ -127,7 +127,7 @@ fn mix(a: [f32; 3], b: [f32; 3], t: f32) -> [f32; 3] {
 }
 
 /// Draws the table of touches, by hand and part.
-fn parts_table(touchables: &Touchables, parts: &[Share]) -> Markup {
+fn parts_table(touchables: &TouchableGeoms, parts: &[TouchShare]) -> Markup {
     html! {
         table.bars {
             thead { tr { th { "part" } th { "share of episodes" } th.number { "right" } th.number { "left" } } }

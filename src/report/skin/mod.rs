@@ -76,7 +76,7 @@ impl Picture {
 const HIDDEN: f64 = 0.003;
 
 /// A direction to look from, in the frame of the first body that feels. Up is z.
-struct Direction {
+struct ViewDirection {
     /// The axis from left to right in the picture.
     across: usize,
     /// Its sign.
@@ -87,7 +87,7 @@ struct Direction {
     depth_sign: f64,
 }
 
-impl Direction {
+impl ViewDirection {
     const fn new(across: usize, across_sign: f64, depth: usize, depth_sign: f64) -> Self {
         Self {
             across,
@@ -99,14 +99,14 @@ impl Direction {
 }
 
 /// From the front, from the right side, from the back.
-const DIRECTIONS: [Direction; 3] = [
-    Direction::new(1, 1.0, 0, 1.0),
-    Direction::new(0, 1.0, 1, -1.0),
-    Direction::new(1, -1.0, 0, -1.0),
+const DIRECTIONS: [ViewDirection; 3] = [
+    ViewDirection::new(1, 1.0, 0, 1.0),
+    ViewDirection::new(0, 1.0, 1, -1.0),
+    ViewDirection::new(1, -1.0, 0, -1.0),
 ];
 
 /// A sensor.
-struct Dot {
+struct SensorDot {
     place: Vec3,
     spacing: f64,
     color: [f64; 3],
@@ -115,7 +115,7 @@ struct Dot {
 }
 
 /// A geom with skin.
-struct Solid {
+struct SkinSolid {
     kind: GeomType,
     size: Vec3,
     pos: Vec3,
@@ -126,7 +126,7 @@ struct Solid {
 /// The part of a picture that one direction is drawn into.
 struct Canvas<'a> {
     picture: &'a mut Picture,
-    direction: &'a Direction,
+    direction: &'a ViewDirection,
     left: f64,
     scale: f64,
     /// Horizontal coordinate of the left border and height of the upper one, m.
@@ -141,8 +141,8 @@ impl Canvas<'_> {
         [self.left + x * self.scale, (self.corner[1] - p[2]) * self.scale]
     }
 
-    fn draw_solid(&mut self, g: &Solid) {
-        let &Direction {
+    fn draw_solid(&mut self, g: &SkinSolid) {
+        let &ViewDirection {
             across,
             across_sign,
             depth,
@@ -187,7 +187,7 @@ impl Canvas<'_> {
         inside && nearness > self.nearness[y as usize * self.picture.width + x as usize] - HIDDEN
     }
 
-    fn draw_dot(&mut self, d: &Dot) {
+    fn draw_dot(&mut self, d: &SensorDot) {
         let p = self.at(d.place);
         if d.felt > 0.0 {
             let radius = (0.35 * d.spacing * self.scale).max(2.0);
@@ -200,14 +200,14 @@ impl Canvas<'_> {
 }
 
 /// The geometry to draw, in the frame of the first body with skin.
-struct Figure {
-    dots: Vec<Dot>,
-    solids: Vec<Solid>,
+struct SkinDrawing {
+    dots: Vec<SensorDot>,
+    solids: Vec<SkinSolid>,
     /// Points of contact and forces on the skin, N.
     arrows: Vec<(Vec3, Vec3)>,
 }
 
-impl Figure {
+impl SkinDrawing {
     /// Collects the geometry, in the frame of the body `first`.
     fn new(
         model: &Model,
@@ -229,7 +229,7 @@ impl Figure {
             let placed = |p: Vec3| to_frame(add(xpos[b], mat_vec(&xmat[b], p)));
             for (i, p) in body.positions().iter().enumerate() {
                 let value = values.get(width * i..width * (i + 1)).unwrap_or(&[]);
-                dots.push(Dot {
+                dots.push(SensorDot {
                     place: placed(*p),
                     spacing: body.spacing,
                     color,
@@ -238,7 +238,7 @@ impl Figure {
             }
             for g in &body.geoms {
                 let turned = mat_mul(&xmat[b], &g.mat);
-                solids.push(Solid {
+                solids.push(SkinSolid {
                     kind: model.geom_type[g.geom],
                     size: model.geom_size[g.geom],
                     pos: placed(model.geom_pos[g.geom]),
@@ -302,7 +302,7 @@ pub fn draw_skin(
     let Some(first) = layout.bodies().first().map(|b| b.body) else {
         return Picture::blank(height, height);
     };
-    let figure = Figure::new(model, layout, xpos, xmat, touch, first);
+    let figure = SkinDrawing::new(model, layout, xpos, xmat, touch, first);
     let bounds = figure.bounds();
     let extents = bounds.map(|(low, high)| high - low);
     let across = DIRECTIONS.iter().map(|d| extents[d.across]).sum::<f64>();

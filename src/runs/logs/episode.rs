@@ -3,9 +3,9 @@
 use std::path::{Path, PathBuf};
 
 use super::{LogError, evaluation_path, make_folder, read_pickle, records, to_value, write, write_pickle};
-use crate::env::{Detailed, Info};
 #[cfg(feature = "npz")]
 use crate::env::{EYE_HAND_PAIRS, PerEyeAndHand};
+use crate::env::{Info, InfoWithDetails};
 use crate::formats::pickle::{self, Value};
 use crate::json;
 use crate::limits::Limits;
@@ -54,7 +54,7 @@ impl EvaluationLog {
             Value::Array(pickle::Array { shape, data }.into())
         });
         let info = Value::list(self.info.iter().map(to_value));
-        let lines = json::lines(self.info.iter().map(Detailed::from));
+        let lines = json::lines(self.info.iter().map(InfoWithDetails::from));
         write(
             path.with_extension("jsonl"),
             &lines.map_err(|e| LogError::Write(e.to_string()))?,

@@ -1,19 +1,19 @@
-//! Records as lines of JSON, byte for byte as `Detailed` serializes them. A long log has millions of them, so names and small numbers,
+//! Records as lines of JSON, byte for byte as `InfoWithDetails` serializes them. A long log has millions of them, so names and small numbers,
 //! their main contents, are formatted once.
 
 use std::io;
 
-use crate::env::{Info, InfoValue, PARTS, PartNames, Regards, STEPS};
+use crate::env::{Info, InfoValue, PARTS, PartNames, RegardCounts, STEPS};
 use crate::json;
 
 /// A writer of lines.
-pub(super) struct LineMaker<'n> {
+pub(super) struct LineFormatter<'n> {
     names: Option<&'n PartNames>,
     /// Names of geoms as JSON, by geom, filled on demand.
     quoted: Vec<String>,
 }
 
-impl<'n> LineMaker<'n> {
+impl<'n> LineFormatter<'n> {
     /// Creates a writer of lines in which touched parts have names, if there are any.
     pub fn new(names: Option<&'n PartNames>) -> Self {
         let quoted = Vec::new();
@@ -48,7 +48,7 @@ impl<'n> LineMaker<'n> {
                 list(out, geoms, |out, geom| self.name(out, geom, names));
             }
         }
-        if let Some(Regards { page, kit }) = info.details.regards {
+        if let Some(RegardCounts { page, kit }) = info.details.regards {
             for (key, counts) in [("page_regards", page), ("kit_regards", kit)] {
                 begin(out, key);
                 json::line(out, &counts)?;
@@ -107,7 +107,7 @@ fn number(out: &mut Vec<u8>, mut n: u64) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::env::{BehaviorInfo, Detailed, InfoDetails, Outcome, PerHand, TaskInfo};
+    use crate::env::{BehaviorInfo, InfoDetails, InfoWithDetails, Outcome, PerHand, TaskInfo};
 
     #[test]
     fn lines_are_those_of_serde() {
@@ -143,9 +143,9 @@ mod tests {
             BehaviorInfo::Task(task),
         ];
         for names in [None, Some(&names)] {
-            let mut maker = LineMaker::new(names);
+            let mut maker = LineFormatter::new(names);
             for (steps, behavior) in [0, 1, 100, 12_345, u64::MAX, 7].into_iter().zip(behaviors.clone()) {
-                let regards = behavior.regards().map(|counts| Regards {
+                let regards = behavior.regards().map(|counts| RegardCounts {
                     page: counts.into(),
                     kit: [1, 2, 3, 4].into(),
                 });
@@ -164,7 +164,7 @@ mod tests {
                 let (mut line, mut expected) = (Vec::new(), Vec::new());
                 maker.line(&mut line, &info).expect("a line");
                 let details = Some(&details);
-                json::line(&mut expected, &Detailed { info: &info, details }).expect("a line");
+                json::line(&mut expected, &InfoWithDetails { info: &info, details }).expect("a line");
                 assert_eq!(String::from_utf8(line), String::from_utf8(expected));
             }
         }

@@ -10,7 +10,7 @@ use std::sync::{Mutex, PoisonError};
 use std::time::SystemTime;
 
 use super::LogError;
-use super::line::LineMaker;
+use super::line::LineFormatter;
 use crate::env::{Info, PartNames};
 use crate::files::{self, replace_file_with};
 
@@ -19,13 +19,13 @@ const AT_ONCE: usize = 1 << 16;
 
 /// A file that this log has written or read.
 #[derive(Clone, Debug)]
-struct Known {
+struct KnownFile {
     records: usize,
     length: u64,
     modified: Option<SystemTime>,
 }
 
-impl Known {
+impl KnownFile {
     fn of(records: usize, meta: &Metadata) -> Self {
         Self {
             records,
@@ -42,21 +42,21 @@ impl Known {
 
 /// The records of a resumed log: their number and the first of them.
 #[derive(Clone, Debug)]
-struct Resumed {
+struct ResumedRecords {
     records: usize,
     first: Info,
 }
 
 /// The known contents of the `.jsonl` file beside a training log.
 #[derive(Debug, Default)]
-pub(super) struct Lines {
+pub(super) struct JsonLines {
     /// For the names of touched parts.
     names: Option<PartNames>,
-    resumed: Option<Resumed>,
-    known: Mutex<Option<Known>>,
+    resumed: Option<ResumedRecords>,
+    known: Mutex<Option<KnownFile>>,
 }
 
-impl Clone for Lines {
+impl Clone for JsonLines {
     fn clone(&self) -> Self {
         Self {
             names: self.names.clone(),
@@ -66,11 +66,11 @@ impl Clone for Lines {
     }
 }
 
-impl Lines {
+impl JsonLines {
     /// Resumes from the `.jsonl` file, if there is one, next to a log of `records` records, whose first record is `first`.
     pub fn of(first: Option<Info>, records: usize) -> Self {
         Self {
-            resumed: first.map(|first| Resumed { records, first }),
+            resumed: first.map(|first| ResumedRecords { records, first }),
             ..Self::default()
         }
     }
@@ -87,11 +87,11 @@ impl Lines {
     /// Marks the file, just written, as up to date with `records` records.
     pub fn know(&self, path: &Path, records: usize) {
         let meta = std::fs::metadata(path).ok();
-        let known = meta.map(|meta| Known::of(records, &meta));
+        let known = meta.map(|meta| KnownFile::of(records, &meta));
         *self.known.lock().unwrap_or_else(PoisonError::into_inner) = known;
     }
 
-    fn known(&self) -> Option<Known> {
+    fn known(&self) -> Option<KnownFile> {
         self.known.lock().unwrap_or_else(PoisonError::into_inner).clone()
     }
 
@@ -107,7 +107,7 @@ impl Lines {
         visit: impl FnOnce(&mut dyn FnMut(&Info)) -> Result<(), LogError>,
     ) -> Result<(), LogError> {
         let last = |records: usize| recent.len().checked_sub(total.checked_sub(records)?);
-        let usable = |known: &Known| last(known.records).is_some();
+        let usable = |known: &KnownFile| last(known.records).is_some();
         let known = self
             .known()
             .filter(|known| std::fs::metadata(path).is_ok_and(|meta| known.is(&meta)));
@@ -126,7 +126,7 @@ impl Lines {
     }
 
     /// Returns whether a file holds the lines of a resumed log: the same number, with the same first and last one.
-    fn adopt(&self, path: &Path, resumed: &Resumed, last: &Info) -> io::Result<Option<Known>> {
+    fn adopt(&self, path: &Path, resumed: &ResumedRecords, last: &Info) -> io::Result<Option<KnownFile>> {
         let mut file = files::open(path)?;
         let meta = file.metadata()?;
         let mut begins = |line: &[u8], from: SeekFrom| -> io::Result<bool> {
@@ -138,18 +138,23 @@ impl Lines {
             Ok(found == line)
         };
         let (mut first, mut end) = (Vec::new(), b"\n".to_vec());
-        let mut maker = LineMaker::new(self.names.as_ref());
+        let mut maker = LineFormatter::new(self.names.as_ref());
         maker.line(&mut first, &resumed.first)?;
         maker.line(&mut end, last)?;
         // the line break of the line before belongs to the end
         let end = if resumed.records == 1 { &end[1..] } else { &end[..] };
         let same = begins(&first, SeekFrom::Start(0))? && begins(end, SeekFrom::End(-(end.len() as i64)))?;
         file.seek(SeekFrom::Start(0))?;
-        Ok((same && breaks(&mut file)? == resumed.records).then(|| Known::of(resumed.records, &meta)))
+        Ok((same && breaks(&mut file)? == resumed.records).then(|| KnownFile::of(resumed.records, &meta)))
     }
 
     /// Replaces a file by its contents and more lines.
-    fn append<'r>(&self, path: &Path, known: &Known, more: impl ExactSizeIterator<Item = &'r Info>) -> io::Result<()> {
+    fn append<'r>(
+        &self,
+        path: &Path,
+        known: &KnownFile,
+        more: impl ExactSizeIterator<Item = &'r Info>,
+    ) -> io::Result<()> {
         if more.len() == 0 {
             return Ok(());
         }
@@ -187,9 +192,9 @@ impl Lines {
         })
     }
 
-    fn writer<'l>(&'l self, file: &'l mut File) -> Writer<'l> {
-        Writer {
-            maker: LineMaker::new(self.names.as_ref()),
+    fn writer<'l>(&'l self, file: &'l mut File) -> LinesWriter<'l> {
+        LinesWriter {
+            maker: LineFormatter::new(self.names.as_ref()),
             file,
             buffer: Vec::new(),
             written: Ok(()),
@@ -198,15 +203,15 @@ impl Lines {
 }
 
 /// Writes lines piece by piece, because names make them long.
-struct Writer<'l> {
-    maker: LineMaker<'l>,
+struct LinesWriter<'l> {
+    maker: LineFormatter<'l>,
     file: &'l mut File,
     buffer: Vec<u8>,
     /// The first error.
     written: io::Result<()>,
 }
 
-impl Writer<'_> {
+impl LinesWriter<'_> {
     fn push(&mut self, info: &Info) {
         if self.written.is_err() {
             return;

@@ -7,12 +7,12 @@ use std::sync::Arc;
 
 use super::{LogError, training_path};
 use crate::env::{BehaviorInfo, Info, InfoSource};
-use crate::formats::pickle::{self, Node, PickleError, Root, Value};
+use crate::formats::pickle::{self, PickleError, PickleKind, RecordNode, Value};
 use crate::limits::Limits;
 use crate::text::quoted;
 
 /// A value of a pickle.
-trait Field: Copy {
+trait PickleField: Copy {
     fn is_dict(self) -> bool;
     fn get(self, key: &str) -> Option<Self>;
     /// Returns a nonnegative whole number.
@@ -25,7 +25,7 @@ trait Field: Copy {
     fn counts(self, most: usize) -> Option<Vec<usize>>;
 }
 
-impl Field for &Value {
+impl PickleField for &Value {
     fn is_dict(self) -> bool {
         matches!(self, Value::Dict(_))
     }
@@ -60,7 +60,7 @@ impl Field for &Value {
     }
 }
 
-impl Field for Node<'_, '_> {
+impl PickleField for RecordNode<'_, '_> {
     fn is_dict(self) -> bool {
         self.is_dict()
     }
@@ -78,7 +78,7 @@ impl Field for Node<'_, '_> {
     }
 
     fn text(&self) -> Option<&str> {
-        Node::text(*self)
+        RecordNode::text(*self)
     }
 
     fn counts(self, most: usize) -> Option<Vec<usize>> {
@@ -88,14 +88,14 @@ impl Field for Node<'_, '_> {
 }
 
 /// A reader of dictionaries as records, which ignores unknown keys.
-struct Dict<'l, F> {
+struct DictSource<'l, F> {
     value: F,
     limits: &'l Limits,
     /// The name of the last task, so that all records share one allocation.
     task: &'l mut Option<Arc<str>>,
 }
 
-impl<F: Field> InfoSource for Dict<'_, F> {
+impl<F: PickleField> InfoSource for DictSource<'_, F> {
     type Error = String;
 
     fn has(&self, key: &'static str) -> bool {
@@ -103,7 +103,7 @@ impl<F: Field> InfoSource for Dict<'_, F> {
     }
 
     fn count(&mut self, key: &'static str) -> Result<u64, String> {
-        let number = self.value.get(key).and_then(Field::count);
+        let number = self.value.get(key).and_then(PickleField::count);
         number.ok_or_else(|| format!("`{key}` is not a whole number"))
     }
 
@@ -116,7 +116,7 @@ impl<F: Field> InfoSource for Dict<'_, F> {
 
     fn name(&mut self, key: &'static str) -> Result<Arc<str>, String> {
         let value = self.value.get(key);
-        let name = value.as_ref().and_then(Field::text);
+        let name = value.as_ref().and_then(PickleField::text);
         // messages and pages show it unchanged
         let name = name.filter(|name| quoted(name) == **name);
         let name =
@@ -130,13 +130,17 @@ impl<F: Field> InfoSource for Dict<'_, F> {
     }
 
     fn number(&mut self, key: &'static str) -> Result<f64, String> {
-        let number = self.value.get(key).and_then(Field::number).filter(|v| v.is_finite());
+        let number = self
+            .value
+            .get(key)
+            .and_then(PickleField::number)
+            .filter(|v| v.is_finite());
         number.ok_or_else(|| format!("`{key}` is not a number"))
     }
 }
 
 /// Converts records one by one. They must have the same behavior, and their number is limited.
-struct Records<'a> {
+struct RecordConverter<'a> {
     limits: &'a Limits,
     number: usize,
     touches: usize,
@@ -144,7 +148,7 @@ struct Records<'a> {
     task: Option<Arc<str>>,
 }
 
-impl<'a> Records<'a> {
+impl<'a> RecordConverter<'a> {
     fn new(limits: &'a Limits) -> Self {
         Self {
             limits,
@@ -155,7 +159,7 @@ impl<'a> Records<'a> {
         }
     }
 
-    fn next(&mut self, value: impl Field) -> Result<Info, String> {
+    fn next(&mut self, value: impl PickleField) -> Result<Info, String> {
         let (k, limits) = (self.number, self.limits);
         if k >= limits.records {
             return Err(format!("it has more than {} records", limits.records));
@@ -165,7 +169,7 @@ impl<'a> Records<'a> {
         }
         let first = self.task.clone();
         let task = &mut self.task;
-        let info = Info::read(&mut Dict { value, limits, task }).map_err(|e| format!("record {k}: {e}"))?;
+        let info = Info::read(&mut DictSource { value, limits, task }).map_err(|e| format!("record {k}: {e}"))?;
         let behavior = discriminant(&info.behavior);
         if *self.behavior.get_or_insert(behavior) != behavior || first.is_some() && first != self.task {
             return Err(format!("record {k} has another behavior than record 0"));
@@ -182,17 +186,17 @@ impl<'a> Records<'a> {
 /// Converts a list to records of one behavior.
 pub(super) fn records(value: &Value, limits: &Limits) -> Result<Vec<Info>, String> {
     let items = value.items().ok_or("it is not a list of records")?;
-    let mut records = Records::new(limits);
+    let mut records = RecordConverter::new(limits);
     items.iter().map(|item| records.next(item)).collect()
 }
 
 /// A fault that ends the reading of a training log.
-enum Stop {
+enum ReadFault {
     Pickle(PickleError),
     Foreign(String),
 }
 
-impl From<PickleError> for Stop {
+impl From<PickleError> for ReadFault {
     fn from(error: PickleError) -> Self {
         Self::Pickle(error)
     }
@@ -210,19 +214,19 @@ pub(super) fn visit_bytes(
     limits: &Limits,
     mut each: impl FnMut(Info),
 ) -> Result<(), LogError> {
-    let mut records = Records::new(limits);
+    let mut records = RecordConverter::new(limits);
     let root = pickle::visit_records(bytes, limits, |node| {
-        each(records.next(node).map_err(Stop::Foreign)?);
+        each(records.next(node).map_err(ReadFault::Foreign)?);
         Ok(())
     });
     let reason = match root {
-        Ok(Root::List) => return Ok(()),
-        Ok(Root::Dict(keys)) if keys.iter().any(|key| key == "qpos") => {
+        Ok(PickleKind::List) => return Ok(()),
+        Ok(PickleKind::Dict(keys)) if keys.iter().any(|key| key == "qpos") => {
             "it is the log of an evaluation episode".to_string()
         }
-        Ok(Root::Dict(_) | Root::Other) => "it is not a list of records".to_string(),
-        Err(Stop::Foreign(reason)) => reason,
-        Err(Stop::Pickle(source)) => {
+        Ok(PickleKind::Dict(_) | PickleKind::Other) => "it is not a list of records".to_string(),
+        Err(ReadFault::Foreign(reason)) => reason,
+        Err(ReadFault::Pickle(source)) => {
             let path = path.to_path_buf();
             return Err(LogError::Pickle { path, source });
         }

@@ -4,11 +4,11 @@ use std::collections::{BTreeMap, VecDeque};
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, OnceLock};
 
-use super::lines::Lines;
+use super::lines::JsonLines;
 use super::read::{RecentRecords, visit, visit_bytes};
 use super::{LogError, check_inside, own_folder, record, training_path, whole, write};
 use crate::config::{Behavior, Compat, Config};
-use crate::env::{BehaviorInfo, Info, InfoValue, PartNames, PerEyeAndHand, Regards};
+use crate::env::{BehaviorInfo, Info, InfoValue, PartNames, PerEyeAndHand, RegardCounts};
 use crate::files::{self, Owner};
 use crate::formats::pickle::{DictWriter, ListWriter};
 use crate::limits::Limits;
@@ -64,9 +64,9 @@ pub struct TrainingLog {
     /// All records, decoded on first use.
     records: OnceLock<Vec<Info>>,
     resumed: bool,
-    lines: Lines,
+    lines: JsonLines,
     /// Both counters of `hand_regard` by record. Lines have both; pickles, which have the kit's format, have one.
-    regards: BTreeMap<usize, Regards>,
+    regards: BTreeMap<usize, RegardCounts>,
     /// The lock that keeps other processes from training into the folder.
     _owner: Arc<Owner>,
 }
@@ -99,7 +99,7 @@ impl TrainingLog {
             recent: VecDeque::new(),
             records: OnceLock::new(),
             resumed: false,
-            lines: Lines::default(),
+            lines: JsonLines::default(),
             regards: BTreeMap::new(),
             _owner: owner,
         }
@@ -129,7 +129,7 @@ impl TrainingLog {
         let mut log = Self::before(config, &path)?;
         let mut first = None;
         log.read(config, &path, &mut first, &mut |_| ())?;
-        log.lines = Lines::of(first, log.totals.records);
+        log.lines = JsonLines::of(first, log.totals.records);
         Ok(log)
     }
 
@@ -142,7 +142,7 @@ impl TrainingLog {
             return Ok(Self::resume(config)?.with_names(names));
         }
         let mut log = Self::before(config, &path)?;
-        let (mut lines, mut first) = (Lines::default(), None);
+        let (mut lines, mut first) = (JsonLines::default(), None);
         lines.set_names(names);
         lines.write_all(&beside, |each| log.read(config, &path, &mut first, each))?;
         lines.know(&beside, log.totals.records);
@@ -329,7 +329,7 @@ impl TrainingLog {
 }
 
 /// Reads both counters of `hand_regard` from the lines of a log, by record; empty if the lines do not have them.
-fn regards_of(path: &Path) -> BTreeMap<usize, Regards> {
+fn regards_of(path: &Path) -> BTreeMap<usize, RegardCounts> {
     #[derive(serde::Deserialize)]
     struct Line {
         page_regards: PerEyeAndHand<u64>,
@@ -342,7 +342,7 @@ fn regards_of(path: &Path) -> BTreeMap<usize, Regards> {
     let both = lines.filter_map(|(record, line)| {
         let line: Line = serde_json::from_slice(line).ok()?;
         let (page, kit) = (line.page_regards, line.kit_regards);
-        Some((record, Regards { page, kit }))
+        Some((record, RegardCounts { page, kit }))
     });
     both.take(Limits::DEFAULT.records).collect()
 }

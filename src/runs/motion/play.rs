@@ -11,7 +11,7 @@ use crate::text::quoted;
 /// The way of playing a motion.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
-pub enum Playing {
+pub enum MotionMode {
     /// MIMo is moved to each pose, with the velocities that lead from one to the next; nothing acts on him. Everything else stays where
     /// it was, at rest.
     #[default]
@@ -23,7 +23,7 @@ pub enum Playing {
 /// Outcome of playing a motion.
 #[derive(Clone, Debug, Default, PartialEq)]
 #[non_exhaustive]
-pub struct Played {
+pub struct MotionResult {
     /// Number of steps of the environment.
     pub steps: u64,
     /// Distance of the joints from the motion, rad: root mean square over steps and joints. 0 when played kinematically.
@@ -46,23 +46,23 @@ pub struct Played {
 pub fn play_motion(
     env: &mut Env,
     motion: &Motion,
-    playing: Playing,
+    playing: MotionMode,
     recorder: Option<(&mut Recorder, u64)>,
     mut each: impl FnMut(&Env) -> bool,
-) -> Result<Played, MotionError> {
-    let course = Course::new(env, motion)?;
+) -> Result<MotionResult, MotionError> {
+    let course = MotionTrajectory::new(env, motion)?;
     let dt = env.blueprint().dt();
     // times just below a whole number of steps, by rounding, count as that number
     let steps = (motion.seconds() / dt + 1e-6).floor() as u64 + 1;
-    let mut played = Played {
+    let mut played = MotionResult {
         beyond_limits: course.beyond_limits(env.model()),
-        ..Played::default()
+        ..MotionResult::default()
     };
     let mut errors = vec![0.0; course.joints.len()];
     let (mut qpos, mut qvel) = (env.state().qpos.clone(), vec![0.0; env.state().qvel.len()]);
     let mut tracker = match playing {
-        Playing::Kinematic => None,
-        Playing::Tracking => Some(Tracker::new(env)?),
+        MotionMode::Kinematic => None,
+        MotionMode::Tracking => Some(Tracker::new(env)?),
     };
     course.at(0.0, dt, &mut qpos, &mut qvel);
     env.set_state(&qpos, &qvel)?;
@@ -113,7 +113,7 @@ fn follow(env: &mut Env, action: &[f32], recorder: Option<&mut Recorder>) -> Res
     Ok(())
 }
 
-impl Played {
+impl MotionResult {
     /// Computes the distances of the joints from the sums of squares.
     fn conclude(&mut self, squares: &[f64], motion: &Motion) {
         let steps = self.steps.max(1) as f64;
@@ -128,21 +128,21 @@ impl Played {
 
 /// A joint that a motion moves.
 #[derive(Clone, Copy, Debug)]
-struct Place {
+struct JointAddress {
     joint: usize,
     qpos: usize,
     dof: usize,
 }
 
 /// A motion as positions and velocities of a scene.
-struct Course<'m> {
+struct MotionTrajectory<'m> {
     motion: &'m Motion,
-    joints: Vec<Place>,
+    joints: Vec<JointAddress>,
     /// Indices of the root in positions and velocities.
     root: Option<(usize, usize)>,
 }
 
-impl<'m> Course<'m> {
+impl<'m> MotionTrajectory<'m> {
     fn new(env: &Env, motion: &'m Motion) -> Result<Self, MotionError> {
         let model = env.model();
         let own = env.senses().proprioception().joints();
@@ -153,7 +153,7 @@ impl<'m> Course<'m> {
                 name: quoted(name),
             })
         };
-        let place = |k: usize| Place {
+        let place = |k: usize| JointAddress {
             joint: own.joint[k],
             qpos: own.qpos[k],
             dof: own.dof[k],

@@ -14,7 +14,7 @@ const COLUMNS: usize = 10_000;
 const UNEVEN: f64 = 0.1;
 
 /// The targets of the columns of a table.
-struct Columns {
+struct ColumnTargets {
     /// For each column except the time: joint, or index in [`ROOT`].
     place: Vec<Result<usize, usize>>,
     names: Vec<String>,
@@ -32,7 +32,7 @@ pub(super) fn parse(path: &Path, bytes: &[u8], degrees: bool, limits: &Limits) -
     let lines = text.trim_start_matches('\u{feff}').lines().enumerate();
     let mut lines = lines.filter(|(_, line)| !line.trim().is_empty() && !line.starts_with('#'));
     let (at, head) = lines.next().ok_or_else(|| fault(0, "the table is empty".to_string()))?;
-    let columns = Columns::of(head).map_err(|reason| fault(at, reason))?;
+    let columns = ColumnTargets::of(head).map_err(|reason| fault(at, reason))?;
     let scale = if degrees { std::f64::consts::PI / 180.0 } else { 1.0 };
     let (mut times, mut angles, mut root) = (Vec::new(), Vec::new(), Vec::new());
     let joints = columns.names.len();
@@ -72,7 +72,7 @@ pub(super) fn parse(path: &Path, bytes: &[u8], degrees: bool, limits: &Limits) -
     Motion::new_with(columns.names, rate, angles, columns.rooted.then_some(root), limits)
 }
 
-impl Columns {
+impl ColumnTargets {
     /// Reads the line of names.
     fn of(head: &str) -> Result<Self, String> {
         let mut cells = head.split(',').map(|cell| cell.trim().trim_matches('"'));

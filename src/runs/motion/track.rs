@@ -12,13 +12,13 @@ const PACE: f64 = 40.0;
 /// A motor gives `m0 (w^2 (q* - q) + 2 w (v* - v)) + bias - passive`, over its gear and within its bounds: `m0` is the inertia of the
 /// joint at `qpos0`, `w` the rate, and bias and passive are the current forces. A servo gets the angle as its target.
 pub(super) struct Tracker {
-    actuators: Vec<Pull>,
+    actuators: Vec<TrackedActuator>,
     servos: bool,
     action: Vec<f32>,
 }
 
 /// An actuator on a joint.
-struct Pull {
+struct TrackedActuator {
     qpos: usize,
     dof: usize,
     gear: f64,
@@ -40,7 +40,7 @@ impl Tracker {
         let pull = |&id: &usize| {
             let joint = model.actuator_joint(id)?;
             let dof = model.jnt_dofadr[joint];
-            Some(Pull {
+            Some(TrackedActuator {
                 qpos: model.jnt_qposadr[joint],
                 dof,
                 gear: model.actuator_gear[id],

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use super::{RecordError, RecordOptions, Recorder};
-use crate::vector::{AutoresetMode, Batch, VectorEnv};
+use crate::vector::{AutoresetMode, VectorEnv, VectorStep};
 
 /// Records all environments of a vector into one folder, with the same episodes as if each had run alone. The `e`-th episode of
 /// environment `i` of `n` gets the number `n * e + i`.
@@ -69,7 +69,7 @@ impl VectorRecorder {
     ///
     /// # Errors
     /// As [`VectorEnv::step`] and [`VectorEnv::look`]; no episode has begun.
-    pub fn step<'v>(&mut self, envs: &'v mut VectorEnv, actions: &[f32]) -> Result<Batch<'v>, RecordError> {
+    pub fn step<'v>(&mut self, envs: &'v mut VectorEnv, actions: &[f32]) -> Result<VectorStep<'v>, RecordError> {
         self.before.clear();
         for i in 0..self.each.len() {
             let env = envs.env(i)?;

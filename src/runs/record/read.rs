@@ -20,7 +20,7 @@ pub struct Record {
 
 /// The result of repeating an episode.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Replayed {
+pub struct RepeatResult {
     /// Number of steps.
     pub steps: u64,
     /// The first step, from 0, whose bits differ from the record's; `None` if all are equal.
@@ -110,7 +110,7 @@ impl Record {
     ///
     /// # Errors
     /// An episode that does not exist, an archive that cannot be read or does not match the environment; as [`Env::step`].
-    pub fn replay(&self, episode: u64, env: &mut Env) -> Result<Replayed, RecordError> {
+    pub fn replay(&self, episode: u64, env: &mut Env) -> Result<RepeatResult, RecordError> {
         let path = self.path(episode)?;
         let npz = Npz::open(&path)?;
         let unfit = |reason: &str| RecordError::Unfit {
@@ -153,7 +153,7 @@ impl Record {
                 first_difference = Some(t as u64);
             }
         }
-        Ok(Replayed {
+        Ok(RepeatResult {
             steps: steps as u64,
             first_difference,
         })

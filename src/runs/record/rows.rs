@@ -8,11 +8,11 @@ use crate::sensors::transform::Sense;
 use crate::spaces::{Array, Values};
 
 /// The names of arrays with their types.
-pub(super) type Names = Vec<(String, &'static str)>;
+pub(super) type ArrayTypes = Vec<(String, &'static str)>;
 
 /// Nonzero values, step by step.
 #[derive(Debug, Default)]
-struct Sparse {
+struct SparseRows {
     ptr: Vec<i32>,
     idx: Vec<i32>,
     val: Vec<Half>,
@@ -21,7 +21,7 @@ struct Sparse {
 
 /// The contacts of each step.
 #[derive(Debug, Default)]
-struct Contacts {
+struct ContactRows {
     ptr: Vec<i32>,
     geom: Vec<u16>,
     pos: Vec<f32>,
@@ -49,7 +49,7 @@ pub(super) const MODEL: &str = "model.";
 
 /// An episode as it is recorded.
 #[derive(Debug, Default)]
-pub(super) struct Rows {
+pub(super) struct EpisodeRows {
     dt: f64,
     columns: [usize; 3],
     snapshot: Vec<u8>,
@@ -63,8 +63,8 @@ pub(super) struct Rows {
     qpos: Vec<f32>,
     qvel: Vec<f32>,
     checksum: Vec<i64>,
-    touch: Option<Sparse>,
-    contacts: Contacts,
+    touch: Option<SparseRows>,
+    contacts: ContactRows,
     reward: Vec<f64>,
     terminated: Vec<u8>,
     truncated: Vec<u8>,
@@ -74,7 +74,7 @@ pub(super) struct Rows {
     eye_sizes: [[usize; 2]; 2],
 }
 
-impl Rows {
+impl EpisodeRows {
     /// Starts an episode.
     pub fn new(env: &Env, options: &RecordOptions) -> Self {
         let mut rows = Self::default();
@@ -123,7 +123,7 @@ impl Rows {
             touch.idx.clear();
             touch.val.clear();
         }
-        let Contacts {
+        let ContactRows {
             ptr,
             geom,
             pos,
@@ -187,8 +187,8 @@ impl Rows {
     }
 
     /// Returns the archive of the episode, and the names of its arrays with their types.
-    pub fn archive(&self) -> Result<(NpzWriter, Names), NpzError> {
-        let mut out = Archive::default();
+    pub fn archive(&self) -> Result<(NpzWriter, ArrayTypes), NpzError> {
+        let mut out = TypedArchive::default();
         let (t, [na, nq, nv]) = (self.len(), self.columns);
         out.put("snapshot", &[self.snapshot.len()], &self.snapshot, Packing::Fast)?;
         for (name, numbers) in &self.changes {
@@ -257,19 +257,19 @@ impl Rows {
 
 /// An archive with the types of its arrays.
 #[derive(Default)]
-struct Archive {
+struct TypedArchive {
     npz: NpzWriter,
-    names: Names,
+    names: ArrayTypes,
 }
 
-impl Archive {
+impl TypedArchive {
     fn put<T: Element>(&mut self, name: &str, shape: &[usize], data: &[T], packing: Packing) -> Result<(), NpzError> {
         self.names.push((name.to_string(), T::dtype()));
         self.npz.add_packed(name, shape, data, packing)
     }
 }
 
-impl Contacts {
+impl ContactRows {
     fn push(&mut self, env: &Env) {
         for contact in &env.state().contact {
             self.geom.extend(contact.geom.map(|geom| geom as u16));
@@ -280,7 +280,7 @@ impl Contacts {
         self.ptr.push(self.dist.len() as i32);
     }
 
-    fn write(&self, out: &mut Archive) -> Result<(), NpzError> {
+    fn write(&self, out: &mut TypedArchive) -> Result<(), NpzError> {
         let n = self.dist.len();
         out.put("contact_ptr", &[self.ptr.len()], &self.ptr, Packing::Fast)?;
         out.put("contact_geom", &[n, 2], &self.geom, Packing::Fast)?;
@@ -323,7 +323,7 @@ impl BehaviorRows {
         }
     }
 
-    fn write(&self, out: &mut Archive, t: usize) -> Result<(), NpzError> {
+    fn write(&self, out: &mut TypedArchive, t: usize) -> Result<(), NpzError> {
         let n = self.first_touch_step.len();
         if self.regards.is_empty() && self.episode_return.is_empty() {
             out.put("first_touch_step", &[n], &self.first_touch_step, Packing::Fast)?;
@@ -359,7 +359,7 @@ fn nonzero(values: &[f32], mut each: impl FnMut(i32, f32)) {
 
 /// Computes the checksum of all bits of positions, velocities, observation and reward after a step.
 pub(super) fn checksum(env: &Env) -> i64 {
-    let mut sum = Checksum(0xcbf2_9ce4_8422_2325);
+    let mut sum = StateHasher(0xcbf2_9ce4_8422_2325);
     let state = env.state();
     for number in state.qpos.iter().chain(&state.qvel) {
         sum.add(number.to_bits());
@@ -381,9 +381,9 @@ pub(super) fn checksum(env: &Env) -> i64 {
 }
 
 /// The hash of Fowler, Noll and Vo over words instead of bytes, rotated so that high bits reach low ones.
-struct Checksum(u64);
+struct StateHasher(u64);
 
-impl Checksum {
+impl StateHasher {
     #[inline(always)]
     fn add(&mut self, word: u64) {
         self.0 = (self.0 ^ word).wrapping_mul(0x0000_0100_0000_01b3).rotate_left(29);

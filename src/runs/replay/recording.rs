@@ -61,7 +61,7 @@ impl Recording {
     pub fn read(archive: &Npz, env: &Env) -> Result<Self, ReplayError> {
         let (nq, nv, na) = (env.model().nq, env.model().nv, env.action_space().len());
         let muscles = env.state().act.len();
-        let arrays = Arrays { archive };
+        let arrays = RecordingArrays { archive };
         let actions = arrays.table("actions", None, na)?;
         let len = actions.len() / na.max(1);
         let rows = |name: &'static str, n: usize| {
@@ -110,7 +110,7 @@ impl Recording {
 
 impl EpisodeStart {
     /// Reads the starts of all episodes of a recording of `len` steps.
-    fn read_all(arrays: &Arrays, env: &Env, len: usize) -> Result<Vec<Self>, ReplayError> {
+    fn read_all(arrays: &RecordingArrays, env: &Env, len: usize) -> Result<Vec<Self>, ReplayError> {
         let rows = arrays.archive.get_i64("reset_row")?;
         let ascending = rows.data.windows(2).all(|w| w[0] < w[1]);
         let within = rows
@@ -160,11 +160,11 @@ impl EpisodeStart {
 const BALL: usize = 7;
 
 /// The arrays of an archive, with their shapes checked.
-struct Arrays<'a> {
+struct RecordingArrays<'a> {
     archive: &'a Npz,
 }
 
-impl Arrays<'_> {
+impl RecordingArrays<'_> {
     fn has(&self, name: &str) -> bool {
         self.archive.arrays().any(|a| a.name == name)
     }

@@ -30,7 +30,7 @@ pub(super) fn complete(
     assets: &dyn AssetSource,
 ) -> Result<SceneFile, SceneFileError> {
     let (tree, root) = Tree::read(document, path, assets, &Limits::default())?;
-    let mut copies = Copies {
+    let mut copies = CopiedFiles {
         strips: setting(&tree, root, &["strippath"]).is_some_and(|text| text == "true"),
         tree: &tree,
         assets,
@@ -50,7 +50,7 @@ pub(super) fn complete(
 }
 
 /// The files that a document names, and their new paths.
-struct Copies<'a> {
+struct CopiedFiles<'a> {
     tree: &'a Tree,
     assets: &'a dyn AssetSource,
     files: BTreeMap<String, Vec<u8>>,
@@ -58,7 +58,7 @@ struct Copies<'a> {
     strips: bool,
 }
 
-impl Copies<'_> {
+impl CopiedFiles<'_> {
     /// Returns the new value of an attribute, if it changes.
     fn replaced(&mut self, at: usize, attribute: &str, value: &str) -> Result<Option<String>, SceneFileError> {
         let kept = match (self.tree.nodes[at].name.as_str(), attribute) {

@@ -9,7 +9,7 @@ use crate::math::*;
 
 /// Bounds of a run of planes whose normals lie close together; runs are split in two until they are short.
 #[derive(Clone, Debug, PartialEq)]
-struct Bundle {
+struct PlaneBundle {
     planes: Range<usize>,
     /// Lower corner of the box around the normals.
     low: Vec3,
@@ -25,7 +25,7 @@ const BUNDLE: usize = 8;
 /// Slack (m) for the rounding of bounds, far below the spacing of sensors.
 const ROUNDING: f64 = 1e-12;
 
-impl Bundle {
+impl PlaneBundle {
     /// Returns an upper bound of the distance of `p` from the planes.
     fn bound(&self, p: Vec3) -> f64 {
         (0..3).fold(self.offset + ROUNDING, |sum, k| {
@@ -38,7 +38,7 @@ impl Bundle {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Hull {
     planes: Vec<HalfSpace>,
-    bundles: Vec<Bundle>,
+    bundles: Vec<PlaneBundle>,
 }
 
 impl Hull {
@@ -72,7 +72,7 @@ impl Hull {
         let (low, high) = (bound(f64::min, f64::INFINITY), bound(f64::max, f64::NEG_INFINITY));
         let offset = planes.iter().fold(f64::NEG_INFINITY, |m, p| m.max(p.offset));
         let index = self.bundles.len();
-        self.bundles.push(Bundle {
+        self.bundles.push(PlaneBundle {
             planes: run.clone(),
             low,
             high,

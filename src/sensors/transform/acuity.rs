@@ -1,6 +1,6 @@
 //! Acuity: the blurred vision of infants.
 
-use super::fourier::{Fourier, Mirrored, Plane};
+use super::fourier::{ComplexPicture, MirrorFilter, PeriodicFilter};
 use super::{Signal, Transform};
 use crate::spaces::NumpyRng;
 
@@ -67,18 +67,18 @@ pub struct Acuity {
     width: usize,
     /// Column by column.
     transfer: Vec<f64>,
-    filter: Filter,
-    plane: Plane,
+    filter: BorderFilter,
+    plane: ComplexPicture,
 }
 
 /// The continuation of images beyond their border.
 #[derive(Clone, Debug)]
-enum Filter {
+enum BorderFilter {
     /// As their mirror image.
-    Mirrored(Box<Mirrored>),
+    Mirrored(Box<MirrorFilter>),
     /// With their opposite side, as the authors' code has it.
     Wrapped {
-        fourier: Box<Fourier>,
+        fourier: Box<PeriodicFilter>,
         /// Whether the transfer function is the same for a frequency and its negative, so that real pictures stay real.
         symmetric: bool,
     },
@@ -88,19 +88,19 @@ impl Acuity {
     /// Creates the blur of images of `height` by `width` pixels.
     pub fn new(options: AcuityOptions, height: usize, width: usize) -> Self {
         let (transfer, filter) = if options.reference {
-            let filter = Filter::Wrapped {
-                fourier: Box::new(Fourier::new(height, width)),
+            let filter = BorderFilter::Wrapped {
+                fourier: Box::new(PeriodicFilter::new(height, width)),
                 symmetric: height.is_multiple_of(2) && width.is_multiple_of(2),
             };
             (transfer_of_waves(options, height, width), filter)
         } else {
-            let filter = Filter::Mirrored(Box::new(Mirrored::new(height, width)));
+            let filter = BorderFilter::Mirrored(Box::new(MirrorFilter::new(height, width)));
             (transfer_of_half_waves(options, height, width), filter)
         };
         Self {
             transfer,
             filter,
-            plane: Plane::new(height * width),
+            plane: ComplexPicture::new(height * width),
             options,
             height,
             width,
@@ -130,11 +130,11 @@ impl Acuity {
     /// Filters both parts of the plane. Returns whether real pictures have stayed real.
     fn filter(&mut self) -> bool {
         match &mut self.filter {
-            Filter::Mirrored(mirrored) => {
+            BorderFilter::Mirrored(mirrored) => {
                 mirrored.filter(&mut self.plane, &self.transfer);
                 true
             }
-            Filter::Wrapped { fourier, symmetric } => {
+            BorderFilter::Wrapped { fourier, symmetric } => {
                 fourier.filter(&mut self.plane, &self.transfer);
                 *symmetric
             }
@@ -146,8 +146,8 @@ impl Acuity {
         // a symmetric transfer function keeps real images real: two channels go through as real and imaginary part of
         // one
         let (mirrored, symmetric) = match self.filter {
-            Filter::Mirrored(_) => (true, true),
-            Filter::Wrapped { symmetric, .. } => (false, symmetric),
+            BorderFilter::Mirrored(_) => (true, true),
+            BorderFilter::Wrapped { symmetric, .. } => (false, symmetric),
         };
         let together = if symmetric { 2 } else { 1 };
         let rounding = if mirrored { 0.5 } else { EXACT };

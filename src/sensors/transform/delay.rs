@@ -5,7 +5,7 @@ use crate::sensors::{EyeImages, SkinValues};
 use crate::spaces::NumpyRng;
 
 /// Values that can wait in a delay.
-pub(in crate::sensors) trait Waiting {
+pub(in crate::sensors) trait DelayValues {
     /// Exchanges the values of two of the same size.
     fn exchange(&mut self, other: &mut Self);
     /// Takes over the values of another of the same size.
@@ -17,7 +17,7 @@ pub(in crate::sensors) trait Waiting {
 }
 
 /// A number that can be written to bytes.
-trait Number: Copy {
+trait ByteNumber: Copy {
     const SIZE: usize;
     fn write(self, out: &mut Vec<u8>);
     /// Reads a number that a sense can report.
@@ -26,7 +26,7 @@ trait Number: Copy {
 
 macro_rules! numbers {
     ($($type:ident: $fits:expr;)*) => {$(
-        impl Number for $type {
+        impl ByteNumber for $type {
             const SIZE: usize = size_of::<$type>();
             fn write(self, out: &mut Vec<u8>) {
                 out.extend_from_slice(&self.to_le_bytes());
@@ -54,7 +54,7 @@ fn take<'b>(bytes: &mut &'b [u8], n: usize) -> Option<&'b [u8]> {
     Some(head)
 }
 
-impl<T: Number> Waiting for Vec<T> {
+impl<T: ByteNumber> DelayValues for Vec<T> {
     fn exchange(&mut self, other: &mut Self) {
         self.swap_with_slice(other);
     }
@@ -75,7 +75,7 @@ impl<T: Number> Waiting for Vec<T> {
     }
 }
 
-impl Waiting for EyeImages {
+impl DelayValues for EyeImages {
     fn exchange(&mut self, other: &mut Self) {
         std::mem::swap(self, other);
     }
@@ -96,7 +96,7 @@ impl Waiting for EyeImages {
     }
 }
 
-impl Waiting for SkinValues {
+impl DelayValues for SkinValues {
     fn exchange(&mut self, other: &mut Self) {
         std::mem::swap(self, other);
     }
@@ -132,14 +132,14 @@ impl Waiting for SkinValues {
 
 /// Values that wait, the same number of steps each.
 #[derive(Clone, Debug)]
-struct Ring<T> {
+struct RingBuffer<T> {
     slots: Vec<T>,
     next: usize,
     /// Whether the slots hold values; if not, the first values fill all of them.
     filled: bool,
 }
 
-impl<T: Waiting + Clone> Ring<T> {
+impl<T: DelayValues + Clone> RingBuffer<T> {
     fn new(steps: usize, empty: T) -> Self {
         Self {
             slots: vec![empty; steps],
@@ -185,7 +185,7 @@ impl<T: Waiting + Clone> Ring<T> {
     }
 
     fn memory(&self) -> usize {
-        self.slots.iter().map(Waiting::memory).sum()
+        self.slots.iter().map(DelayValues::memory).sum()
     }
 }
 
@@ -202,7 +202,7 @@ impl<T: Waiting + Clone> Ring<T> {
 /// ```
 #[derive(Clone, Debug)]
 pub struct DelayLine {
-    ring: Ring<Vec<f32>>,
+    ring: RingBuffer<Vec<f32>>,
     values: Vec<f32>,
 }
 
@@ -210,7 +210,7 @@ impl DelayLine {
     /// Creates a line for vectors of a length. It returns the first one until it is full.
     pub fn new(steps: usize, len: usize) -> Self {
         Self {
-            ring: Ring::new(steps, vec![0.0; len]),
+            ring: RingBuffer::new(steps, vec![0.0; len]),
             values: vec![0.0; len],
         }
     }
@@ -260,15 +260,15 @@ pub struct Delay {
     steps: usize,
     /// Duration of a step in ms, for display.
     step_ms: f64,
-    memory: Memory,
+    memory: DelayQueue,
 }
 
 /// The queue of delayed values, made from the first ones, whose size it has.
 #[derive(Clone, Debug)]
-enum Memory {
-    Numbers(Ring<Vec<f64>>, Vec<f64>),
-    Skin(Box<Ring<SkinValues>>),
-    Eye(Box<Ring<EyeImages>>),
+enum DelayQueue {
+    Numbers(RingBuffer<Vec<f64>>, Vec<f64>),
+    Skin(Box<RingBuffer<SkinValues>>),
+    Eye(Box<RingBuffer<EyeImages>>),
 }
 
 impl Delay {
@@ -277,19 +277,19 @@ impl Delay {
         let memory = match like {
             Signal::Numbers(values) => {
                 let zeros = vec![0.0; values.len()];
-                Memory::Numbers(Ring::new(steps, zeros.clone()), zeros)
+                DelayQueue::Numbers(RingBuffer::new(steps, zeros.clone()), zeros)
             }
             Signal::Skin(values) => {
                 let zeros = SkinValues::new(values.sensors(), values.width());
                 // a clone would not keep the capacity for all sensors
                 let slots = (0..steps).map(|_| SkinValues::new(zeros.sensors(), zeros.width()));
-                Memory::Skin(Box::new(Ring {
+                DelayQueue::Skin(Box::new(RingBuffer {
                     slots: slots.collect(),
                     next: 0,
                     filled: false,
                 }))
             }
-            Signal::Eye { images, .. } => Memory::Eye(Box::new(Ring::new(steps, EyeImages::clone(images)))),
+            Signal::Eye { images, .. } => DelayQueue::Eye(Box::new(RingBuffer::new(steps, EyeImages::clone(images)))),
         };
         Self { steps, step_ms, memory }
     }
@@ -309,46 +309,46 @@ impl Transform for Delay {
 
     fn apply(&mut self, signal: Signal<'_>, _: &mut NumpyRng) {
         match (&mut self.memory, signal) {
-            (Memory::Numbers(ring, room), Signal::Numbers(values)) if room.len() == values.len() => {
+            (DelayQueue::Numbers(ring, room), Signal::Numbers(values)) if room.len() == values.len() => {
                 room.copy_from_slice(values);
                 ring.pass(room);
                 values.copy_from_slice(room);
             }
-            (Memory::Skin(ring), Signal::Skin(values)) => ring.pass(values),
-            (Memory::Eye(ring), Signal::Eye { images, .. }) => ring.pass(images),
+            (DelayQueue::Skin(ring), Signal::Skin(values)) => ring.pass(values),
+            (DelayQueue::Eye(ring), Signal::Eye { images, .. }) => ring.pass(images),
             _ => {}
         }
     }
 
     fn reset(&mut self) {
         match &mut self.memory {
-            Memory::Numbers(ring, _) => ring.filled = false,
-            Memory::Skin(ring) => ring.filled = false,
-            Memory::Eye(ring) => ring.filled = false,
+            DelayQueue::Numbers(ring, _) => ring.filled = false,
+            DelayQueue::Skin(ring) => ring.filled = false,
+            DelayQueue::Eye(ring) => ring.filled = false,
         }
     }
 
     fn save(&self, out: &mut Vec<u8>) {
         match &self.memory {
-            Memory::Numbers(ring, _) => ring.save(out),
-            Memory::Skin(ring) => ring.save(out),
-            Memory::Eye(ring) => ring.save(out),
+            DelayQueue::Numbers(ring, _) => ring.save(out),
+            DelayQueue::Skin(ring) => ring.save(out),
+            DelayQueue::Eye(ring) => ring.save(out),
         }
     }
 
     fn load(&mut self, bytes: &[u8]) -> bool {
         match &mut self.memory {
-            Memory::Numbers(ring, _) => ring.load(bytes),
-            Memory::Skin(ring) => ring.load(bytes),
-            Memory::Eye(ring) => ring.load(bytes),
+            DelayQueue::Numbers(ring, _) => ring.load(bytes),
+            DelayQueue::Skin(ring) => ring.load(bytes),
+            DelayQueue::Eye(ring) => ring.load(bytes),
         }
     }
 
     fn memory(&self) -> usize {
         match &self.memory {
-            Memory::Numbers(ring, _) => ring.memory(),
-            Memory::Skin(ring) => ring.memory(),
-            Memory::Eye(ring) => ring.memory(),
+            DelayQueue::Numbers(ring, _) => ring.memory(),
+            DelayQueue::Skin(ring) => ring.memory(),
+            DelayQueue::Eye(ring) => ring.memory(),
         }
     }
 }

@@ -7,17 +7,17 @@ mod columns;
 mod cosines;
 
 use crate::physics::vectorize;
-use columns::Columns;
-use cosines::Cosines;
+use columns::FourierColumns;
+use cosines::CosineColumns;
 
 /// A picture of complex numbers, row by row, real and imaginary parts apart.
 #[derive(Clone, Debug)]
-pub(super) struct Plane {
+pub(super) struct ComplexPicture {
     pub re: Vec<f64>,
     pub im: Vec<f64>,
 }
 
-impl Plane {
+impl ComplexPicture {
     pub fn new(len: usize) -> Self {
         Self {
             re: vec![0.0; len],
@@ -27,23 +27,23 @@ impl Plane {
 }
 
 /// Unnormalised transforms of all columns of a picture at once, and their inverses.
-pub(super) trait Transform {
+pub(super) trait ColumnTransform {
     /// Makes the transform of columns of a length; rows have `width` values.
     fn new(length: usize, width: usize) -> Self;
 
     /// Transforms all columns.
-    fn forward(&mut self, plane: &mut Plane);
+    fn forward(&mut self, plane: &mut ComplexPicture);
 
     /// Transforms them back, `length` times as large.
-    fn backward(&mut self, plane: &mut Plane);
+    fn backward(&mut self, plane: &mut ComplexPicture);
 }
 
 /// Filters of pictures that repeat beyond their borders.
-pub(super) type Fourier = Filter<Columns>;
+pub(super) type PeriodicFilter = Filter<FourierColumns>;
 
 /// Filters of pictures that continue beyond their borders as mirror images. Number k of a column of the spectrum is the frequency of k
 /// half waves over the height.
-pub(super) type Mirrored = Filter<Cosines>;
+pub(super) type MirrorFilter = Filter<CosineColumns>;
 
 /// Filters of pictures of `height` by `width` by one kind of transform.
 #[derive(Clone, Debug)]
@@ -53,22 +53,22 @@ pub(super) struct Filter<T> {
     down: T,
     across: T,
     /// A buffer for the picture with rows and columns exchanged.
-    turned: Plane,
+    turned: ComplexPicture,
 }
 
-impl<T: Transform> Filter<T> {
+impl<T: ColumnTransform> Filter<T> {
     pub fn new(height: usize, width: usize) -> Self {
         Self {
             height,
             width,
             down: T::new(height, width),
             across: T::new(width, height),
-            turned: Plane::new(height * width),
+            turned: ComplexPicture::new(height * width),
         }
     }
 
     /// Multiplies the spectrum of a picture by `transfer`, stored column by column, and transforms it back.
-    pub fn filter(&mut self, picture: &mut Plane, transfer: &[f64]) {
+    pub fn filter(&mut self, picture: &mut ComplexPicture, transfer: &[f64]) {
         let (height, width) = (self.height, self.width);
         let turned = &mut self.turned;
         vectorize(
@@ -97,7 +97,7 @@ impl<T: Transform> Filter<T> {
 
 /// Transposes an image of `rows` rows and `columns` columns.
 #[inline(always)]
-fn turn(from: &Plane, to: &mut Plane, rows: usize, columns: usize) {
+fn turn(from: &ComplexPicture, to: &mut ComplexPicture, rows: usize, columns: usize) {
     for (from, to) in [(&from.re, &mut to.re), (&from.im, &mut to.im)] {
         for (row, values) in from.chunks_exact(columns).enumerate() {
             for (column, v) in values.iter().enumerate() {

@@ -13,7 +13,7 @@ pub struct Foveation {
     strength: f64,
     height: usize,
     width: usize,
-    sources: Vec<Source>,
+    sources: Vec<PixelSource>,
     bytes: Vec<u8>,
     depth: Vec<f32>,
     segmentation: Vec<i32>,
@@ -21,7 +21,7 @@ pub struct Foveation {
 
 /// The source of a pixel.
 #[derive(Clone, Copy, Debug)]
-struct Source {
+struct PixelSource {
     /// Upper left, upper right, lower left, lower right.
     pixels: [u32; 4],
     /// Position between them, right and down, 0 to 1.
@@ -44,7 +44,7 @@ impl Foveation {
                 (true, false) => log / strength,
                 (true, true) => radius * pxfm::f_expm1(r / radius * log) / strength / r,
             };
-            Source::at(centre[0] + shrunk * off[0], centre[1] + shrunk * off[1], height, width)
+            PixelSource::at(centre[0] + shrunk * off[0], centre[1] + shrunk * off[1], height, width)
         };
         let pixels = (0..height).flat_map(|y| (0..width).map(move |x| (x, y)));
         Self {
@@ -76,7 +76,7 @@ impl Foveation {
     }
 }
 
-impl Source {
+impl PixelSource {
     fn at(x: f64, y: f64, height: usize, width: usize) -> Self {
         let (left, top) = (x.floor(), y.floor());
         let pixel = |x: f64, y: f64| (reflected(y, height) * width + reflected(x, width)) as u32;
@@ -102,7 +102,7 @@ fn reflected(place: f64, size: usize) -> usize {
 }
 
 /// Warps an image by the nearest source of each pixel.
-fn pick<T: Copy>(image: &mut [T], before: &mut [T], sources: &[Source]) {
+fn pick<T: Copy>(image: &mut [T], before: &mut [T], sources: &[PixelSource]) {
     if image.is_empty() {
         return;
     }
@@ -129,6 +129,8 @@ impl Transform for Foveation {
     }
 
     fn memory(&self) -> usize {
-        self.sources.len() * size_of::<Source>() + self.bytes.len() + 4 * (self.depth.len() + self.segmentation.len())
+        self.sources.len() * size_of::<PixelSource>()
+            + self.bytes.len()
+            + 4 * (self.depth.len() + self.segmentation.len())
     }
 }

@@ -38,10 +38,10 @@ mod hold;
 mod noise;
 
 pub use acuity::{Acuity, AcuityOptions, acuity_cutoff};
-pub(super) use delay::Waiting;
+pub(super) use delay::DelayValues;
 pub use delay::{Delay, DelayLine};
 pub use foveation::Foveation;
-pub(crate) use hold::Hold;
+pub(crate) use hold::SampleHold;
 pub use noise::Noise;
 
 pub use crate::sensors::sense::Sense;

@@ -6,7 +6,7 @@ fn angle(env: &Env, joint: &str) -> f64 {
     let range = env
         .senses()
         .proprioception()
-        .find(env.model(), Component::Angles, joint)
+        .find(env.model(), ProprioceptionComponent::Angles, joint)
         .expect("a joint of MIMo");
     env.observation().proprioception[range.start]
 }

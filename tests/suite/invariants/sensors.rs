@@ -2,12 +2,12 @@
 
 use std::sync::Arc;
 
-use babybench::actuation::{self, Actuation, SpringDamper};
+use babybench::actuation::{self, Actuation, SpringDamperModel};
 use babybench::config::{ActuationModel, Behavior, Compat, Scene};
 use babybench::mimo::{build_model, embedded};
 use babybench::model::SensorType;
 use babybench::physics::{Engine, SoftEngine, SoftOptions, State};
-use babybench::sensors::{Component, Proprioception, Vestibular};
+use babybench::sensors::{Proprioception, ProprioceptionComponent, Vestibular};
 use babybench::{Config, Env, Model};
 
 use crate::common::*;
@@ -20,7 +20,7 @@ fn sensors(model: &Model, s: &State, pick: impl Fn(SensorType) -> bool) -> Vec<f
         .collect()
 }
 
-fn component(env: &Env, component: Component) -> &[f64] {
+fn component(env: &Env, component: ProprioceptionComponent) -> &[f64] {
     &env.observation().proprioception[env
         .senses()
         .proprioception()
@@ -55,7 +55,11 @@ fn invariant_9_forces_lag_and_positions_do_not() {
                 let at = format!("{name}, step {k}");
                 let torques = sensors(&model, &past, |t| t == SensorType::Torque);
                 let balance = sensors(&model, &past, |t| t != SensorType::Torque);
-                assert_eq!(component(&env, Component::Torques), torques, "{at}: torques");
+                assert_eq!(
+                    component(&env, ProprioceptionComponent::Torques),
+                    torques,
+                    "{at}: torques"
+                );
                 assert_eq!(env.observation().vestibular, Some(&balance[..]), "{at}: vestibular");
                 assert!(
                     past.contact == now.contact && past.geom_xpos == now.geom_xpos && past.cam_xmat == now.cam_xmat,
@@ -64,12 +68,12 @@ fn invariant_9_forces_lag_and_positions_do_not() {
                 let joints = env.senses().proprioception().joints();
                 let of = |values: &[f64], index: &[usize]| index.iter().map(|&i| values[i]).collect::<Vec<_>>();
                 assert_eq!(
-                    component(&env, Component::Angles),
+                    component(&env, ProprioceptionComponent::Angles),
                     of(&now.qpos, &joints.qpos),
                     "{at}: angles"
                 );
                 assert_eq!(
-                    component(&env, Component::Velocities),
+                    component(&env, ProprioceptionComponent::Velocities),
                     of(&now.qvel, &joints.dof),
                     "{at}: velocities"
                 );
@@ -88,7 +92,7 @@ fn after_a_reset_without_start_actions_everything_is_of_one_moment() {
     now.qacc_warmstart.fill(0.0);
     env.blueprint().engine().forward(&mut now).expect("no divergence");
     assert_eq!(
-        component(&env, Component::Torques),
+        component(&env, ProprioceptionComponent::Torques),
         sensors(&model, &now, |t| t == SensorType::Torque)
     );
     assert_eq!(
@@ -98,8 +102,8 @@ fn after_a_reset_without_start_actions_everything_is_of_one_moment() {
 }
 
 /// The configuration with its switches of proprioception set by four bits, under either `compat`, and the components it has.
-fn switched(base: &Config, flags: u32) -> [(Config, Vec<Component>); 2] {
-    use Component::*;
+fn switched(base: &Config, flags: u32) -> [(Config, Vec<ProprioceptionComponent>); 2] {
+    use ProprioceptionComponent::*;
     let on = |bit: u32| flags >> bit & 1 == 1;
     let api = Config {
         proprio_velocity: on(0),
@@ -128,7 +132,7 @@ fn switched(base: &Config, flags: u32) -> [(Config, Vec<Component>); 2] {
 
 #[test]
 fn the_observation_has_the_documented_length_and_order() {
-    use Component::*;
+    use ProprioceptionComponent::*;
     for (behavior, joints, torques, actuators) in [(Behavior::None, 47, 21, 44), (Behavior::HandRegard, 91, 53, 88)] {
         for kind in ActuationModel::ALL.iter().copied() {
             let per_actuator = match kind {
@@ -143,7 +147,7 @@ fn the_observation_has_the_documented_length_and_order() {
             let model = build_model(&base, &embedded()).expect("the assets load");
             let actuation = actuation::build(&model, &base).expect("every actuation model fits");
             assert_eq!(model.nu(), actuators);
-            let len = |c: &Component| match c {
+            let len = |c: &ProprioceptionComponent| match c {
                 Angles | Velocities | Limits => joints,
                 Torques => 3 * torques,
                 Actuation => per_actuator * actuators,
@@ -184,7 +188,7 @@ fn invariant_12_parts_without_the_environment_give_the_same_observation() {
     let model = Arc::new(build_model(&config, &embedded()).expect("the assets load"));
     let mut engine = SoftEngine::new(model.clone(), SoftOptions::default());
     let mut state = engine.new_state();
-    let motors = SpringDamper::new(&model, config.compat);
+    let motors = SpringDamperModel::new(&model, config.compat);
     let proprioception = Proprioception::new(&model, &config, motors.observation_len());
     let vestibular = Vestibular::new(&model);
     let (mut body, mut balance) = (vec![0.0; proprioception.len()], vec![0.0; vestibular.len()]);

@@ -11,7 +11,7 @@ fn line(observation: &Observation<'_>, flags: (f64, bool, bool), info: &Info) ->
     format!("{observation:?} {flags:?} {} {:?}", info.steps, info.behavior)
 }
 
-fn row(batch: &Batch<'_>, row: usize, info: &Info) -> String {
+fn row(batch: &VectorStep<'_>, row: usize, info: &Info) -> String {
     let flags = (batch.rewards[row], batch.terminated[row], batch.truncated[row]);
     line(&observed(batch, row), flags, info)
 }

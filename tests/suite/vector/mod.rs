@@ -7,7 +7,7 @@ mod trouble;
 
 use babybench::config::{ActuationModel, Behavior, Scene};
 use babybench::env::Observation;
-use babybench::vector::Batch;
+use babybench::vector::VectorStep;
 use babybench::{AutoresetMode, Blueprint, Config, VectorEnv, VectorOptions};
 
 use crate::common::*;
@@ -38,6 +38,6 @@ fn vector(blueprint: &Blueprint, n: usize, threads: usize, autoreset: AutoresetM
 }
 
 /// The observation in a row.
-fn observed<'a>(batch: &Batch<'a>, row: usize) -> Observation<'a> {
+fn observed<'a>(batch: &VectorStep<'a>, row: usize) -> Observation<'a> {
     batch.row(row).expect("there is such a row")
 }

@@ -1,40 +1,40 @@
 //! Fourier transforms of columns of any length.
 
-use super::{Plane, Transform};
+use super::{ColumnTransform, ComplexPicture};
 
 /// Transforms of all columns of a picture at once.
 #[derive(Clone, Debug)]
-pub enum Columns {
+pub enum FourierColumns {
     /// Lengths that are powers of two.
-    Halved(Halved),
+    PowerOfTwo(RadixTwo),
     /// Any other length, as a convolution with a chirp (L. I. Bluestein, "A Linear Filtering Approach to the Computation
     /// of Discrete Fourier Transform", 1970).
-    Chirped(Box<Chirped>),
+    AnyLength(Box<ChirpTransform>),
 }
 
-impl Transform for Columns {
+impl ColumnTransform for FourierColumns {
     fn new(length: usize, width: usize) -> Self {
         if length.is_power_of_two() {
-            Self::Halved(Halved::new(length, width))
+            Self::PowerOfTwo(RadixTwo::new(length, width))
         } else {
-            Self::Chirped(Box::new(Chirped::new(length, width)))
+            Self::AnyLength(Box::new(ChirpTransform::new(length, width)))
         }
     }
 
     #[inline(always)]
-    fn forward(&mut self, plane: &mut Plane) {
+    fn forward(&mut self, plane: &mut ComplexPicture) {
         match self {
-            Self::Halved(halved) => halved.transform(&mut plane.re, &mut plane.im),
-            Self::Chirped(chirped) => chirped.transform(&mut plane.re, &mut plane.im),
+            Self::PowerOfTwo(halved) => halved.transform(&mut plane.re, &mut plane.im),
+            Self::AnyLength(chirped) => chirped.transform(&mut plane.re, &mut plane.im),
         }
     }
 
     /// Transforms with the opposite sign of the exponent: the same with real and imaginary parts exchanged.
     #[inline(always)]
-    fn backward(&mut self, plane: &mut Plane) {
+    fn backward(&mut self, plane: &mut ComplexPicture) {
         match self {
-            Self::Halved(halved) => halved.transform(&mut plane.im, &mut plane.re),
-            Self::Chirped(chirped) => chirped.transform(&mut plane.im, &mut plane.re),
+            Self::PowerOfTwo(halved) => halved.transform(&mut plane.im, &mut plane.re),
+            Self::AnyLength(chirped) => chirped.transform(&mut plane.im, &mut plane.re),
         }
     }
 }
@@ -47,14 +47,14 @@ pub fn root(k: usize, n: usize) -> [f64; 2] {
 
 /// The transform by halves (J. W. Cooley and J. W. Tukey, 1965).
 #[derive(Clone, Debug)]
-pub struct Halved {
+pub struct RadixTwo {
     length: usize,
     width: usize,
     /// The first half of the roots of unity.
     roots: Vec<[f64; 2]>,
 }
 
-impl Halved {
+impl RadixTwo {
     fn new(length: usize, width: usize) -> Self {
         Self {
             length,
@@ -112,35 +112,35 @@ fn butterfly([cos, sin]: [f64; 2], [a_re, a_im]: [&mut [f64]; 2], [b_re, b_im]: 
 
 /// The transform of any length by those of a power of two.
 #[derive(Clone, Debug)]
-pub struct Chirped {
+pub struct ChirpTransform {
     width: usize,
-    halved: Halved,
+    halved: RadixTwo,
     /// exp(-i pi k^2 / n).
     chirp: Vec<[f64; 2]>,
     /// The spectrum of the conjugate chirp over the length of `halved`.
     spectrum: Vec<[f64; 2]>,
-    room: Plane,
+    room: ComplexPicture,
 }
 
-impl Chirped {
+impl ChirpTransform {
     fn new(length: usize, width: usize) -> Self {
         let long = (2 * length - 1).next_power_of_two();
         // k^2 modulo 2 n: the same angle, but small enough to be exact
         let chirp: Vec<_> = (0..length).map(|k| root(k * k % (2 * length), 2 * length)).collect();
-        let mut kernel = Plane::new(long);
+        let mut kernel = ComplexPicture::new(long);
         for (k, [cos, sin]) in chirp.iter().enumerate() {
             // the convolution needs the chirp at k and -k: it wraps around the end of the long transform
             for at in [k, (long - k) % long] {
                 (kernel.re[at], kernel.im[at]) = (cos / long as f64, -sin / long as f64);
             }
         }
-        Halved::new(long, 1).transform(&mut kernel.re, &mut kernel.im);
+        RadixTwo::new(long, 1).transform(&mut kernel.re, &mut kernel.im);
         Self {
             width,
-            halved: Halved::new(long, width),
+            halved: RadixTwo::new(long, width),
             chirp,
             spectrum: kernel.re.into_iter().zip(kernel.im).map(<[f64; 2]>::from).collect(),
-            room: Plane::new(long * width),
+            room: ComplexPicture::new(long * width),
         }
     }
 
@@ -149,7 +149,7 @@ impl Chirped {
     #[cfg_attr(not(target_arch = "x86_64"), inline(never))]
     fn transform(&mut self, re: &mut [f64], im: &mut [f64]) {
         let w = self.width;
-        let Plane {
+        let ComplexPicture {
             re: long_re,
             im: long_im,
         } = &mut self.room;

@@ -1,22 +1,22 @@
 //! Cosine transforms of columns, each by a Fourier transform of the same length (J. Makhoul, "A Fast Cosine Transform in One and Two
 //! Dimensions", 1980).
 
-use super::columns::Columns;
-use super::{Plane, Transform};
+use super::columns::FourierColumns;
+use super::{ColumnTransform, ComplexPicture};
 
 /// Cosine transforms of all columns of a picture at once.
 #[derive(Clone, Debug)]
-pub struct Cosines {
+pub struct CosineColumns {
     length: usize,
     width: usize,
-    columns: Columns,
+    columns: FourierColumns,
     /// Cosine and sine of pi k / 2 n.
     quarter: Vec<[f64; 2]>,
     /// A buffer for the picture with its rows in another order.
-    room: Plane,
+    room: ComplexPicture,
 }
 
-impl Transform for Cosines {
+impl ColumnTransform for CosineColumns {
     fn new(length: usize, width: usize) -> Self {
         let quarter = |k: usize| {
             let (sin, cos) = pxfm::f_sincospi(k as f64 / (2 * length) as f64);
@@ -25,15 +25,15 @@ impl Transform for Cosines {
         Self {
             length,
             width,
-            columns: Columns::new(length, width),
+            columns: FourierColumns::new(length, width),
             quarter: (0..length).map(quarter).collect(),
-            room: Plane::new(length * width),
+            room: ComplexPicture::new(length * width),
         }
     }
 
     #[cfg_attr(target_arch = "x86_64", inline(always))]
     #[cfg_attr(not(target_arch = "x86_64"), inline(never))]
-    fn forward(&mut self, plane: &mut Plane) {
+    fn forward(&mut self, plane: &mut ComplexPicture) {
         let (n, w) = (self.length, self.width);
         for place in 0..n {
             let (from, to) = (self.row_at(place) * w, place * w);
@@ -57,7 +57,7 @@ impl Transform for Cosines {
     /// The inverse, n times as large.
     #[cfg_attr(target_arch = "x86_64", inline(always))]
     #[cfg_attr(not(target_arch = "x86_64"), inline(never))]
-    fn backward(&mut self, plane: &mut Plane) {
+    fn backward(&mut self, plane: &mut ComplexPicture) {
         let (n, w) = (self.length, self.width);
         self.pairs(
             plane,
@@ -80,7 +80,7 @@ impl Transform for Cosines {
     }
 }
 
-impl Cosines {
+impl CosineColumns {
     /// Returns the row of the picture at an index of the Fourier transform: the even rows, then the odd ones backwards.
     #[inline(always)]
     fn row_at(&self, place: usize) -> usize {
@@ -94,7 +94,7 @@ impl Cosines {
 
     /// Replaces the numbers in rows k and n - k by what `exchange` makes of them and of cosine and sine; row 0 stays.
     #[inline(always)]
-    fn pairs(&self, plane: &mut Plane, exchange: impl Fn([f64; 2], [f64; 2], [f64; 2]) -> [[f64; 2]; 2]) {
+    fn pairs(&self, plane: &mut ComplexPicture, exchange: impl Fn([f64; 2], [f64; 2], [f64; 2]) -> [[f64; 2]; 2]) {
         let (n, w) = (self.length, self.width);
         for k in 1..=n / 2 {
             let (low, high, turn) = (k * w, (n - k) * w, self.quarter[k]);

@@ -3,8 +3,8 @@ use super::*;
 use crate::spaces::NumpyRng;
 
 /// The transform by its definition.
-fn slow(picture: &Plane, height: usize, width: usize) -> Plane {
-    let mut out = Plane::new(height * width);
+fn slow(picture: &ComplexPicture, height: usize, width: usize) -> ComplexPicture {
+    let mut out = ComplexPicture::new(height * width);
     for (v, u) in (0..height).flat_map(|v| (0..width).map(move |u| (v, u))) {
         for (y, x) in (0..height).flat_map(|y| (0..width).map(move |x| (y, x))) {
             let [c, s] = root(v * y % height, height);
@@ -32,8 +32,8 @@ const SIZES: [(usize, usize); 9] = [
 ];
 
 /// Returns a picture and a transfer function at random.
-fn random(rng: &mut NumpyRng, len: usize) -> (Plane, Vec<f64>) {
-    let mut picture = Plane::new(len);
+fn random(rng: &mut NumpyRng, len: usize) -> (ComplexPicture, Vec<f64>) {
+    let mut picture = ComplexPicture::new(len);
     for v in picture.re.iter_mut().chain(&mut picture.im) {
         *v = rng.uniform() - 0.5;
     }
@@ -53,7 +53,7 @@ fn transforms_of_all_sizes_are_those_of_the_definition() {
             (spectrum.re[at], spectrum.im[at]) = (spectrum.re[at] * t, -spectrum.im[at] * t);
         }
         let expect = slow(&spectrum, height, width);
-        Fourier::new(height, width).filter(&mut picture, &transfer);
+        PeriodicFilter::new(height, width).filter(&mut picture, &transfer);
         for k in 0..height * width {
             let off = (picture.re[k] - expect.re[k]).hypot(picture.im[k] + expect.im[k]);
             assert!(off < 1e-13, "{height} x {width}: {off:e} off at {k}");
@@ -67,7 +67,7 @@ fn mirrored_filters_are_those_of_pictures_with_their_mirror_images() {
     for (height, width) in SIZES {
         let (mut picture, transfer) = random(&mut rng, height * width);
         let mirror = |i: usize, n: usize| if i < n { i } else { 2 * n - 1 - i };
-        let mut whole = Plane::new(4 * height * width);
+        let mut whole = ComplexPicture::new(4 * height * width);
         let mut twice = vec![0.0; 4 * height * width];
         for (y, x) in (0..2 * height).flat_map(|y| (0..2 * width).map(move |x| (y, x))) {
             let from = mirror(y, height) * width + mirror(x, width);
@@ -79,8 +79,8 @@ fn mirrored_filters_are_those_of_pictures_with_their_mirror_images() {
                 twice[x * 2 * height + y] = transfer[u * height + v];
             }
         }
-        Fourier::new(2 * height, 2 * width).filter(&mut whole, &twice);
-        Mirrored::new(height, width).filter(&mut picture, &transfer);
+        PeriodicFilter::new(2 * height, 2 * width).filter(&mut whole, &twice);
+        MirrorFilter::new(height, width).filter(&mut picture, &transfer);
         for (y, x) in (0..height).flat_map(|y| (0..width).map(move |x| (y, x))) {
             let (k, at) = (y * width + x, y * 2 * width + x);
             let off = (picture.re[k] - whole.re[at]).hypot(picture.im[k] - whole.im[at]);

@@ -1,10 +1,11 @@
 //! Checks of the document of a custom scene, before it is compiled.
 
-use super::{FOLDER, Own, PARTS, Room, RoomError};
+use super::{CustomScene, CustomSceneError, DocumentSource, FILES, FOLDER};
 use crate::assets::AssetSource;
 use crate::limits::Limits;
 use crate::mimo::ROOT;
-use crate::mimo::scene::{SceneError, Source};
+use crate::mimo::error::SceneError;
+use crate::mimo::scene::SceneSource;
 use crate::mjcf_loader::{Node, Tree};
 
 /// Settings of `<compiler>` that would read MIMo's own documents in another way, each with its only value.
@@ -24,17 +25,17 @@ const SECOND: &str = "other_mimo.xml";
 /// The time step of all scenes, s.
 const TIMESTEP: f64 = 0.005;
 
-impl<A: AssetSource> Room<A> {
+impl<A: AssetSource> CustomScene<A> {
     /// Checks that the document has a whole MIMo, at his place, and no setting that would change him.
-    pub fn check(&self, source: &Source<'_>) -> Result<(), SceneError> {
+    pub fn check(&self, source: &SceneSource<'_>) -> Result<(), SceneError> {
         let read = Tree::read(source.document, source.path, source.assets, &Limits::default());
         let (tree, _) = read.map_err(|e| self.localized_load(e))?;
-        let whole = matches!(self.own, Own::Added(_));
-        for (file, place, what) in PARTS {
+        let whole = matches!(self.own, DocumentSource::Added(_));
+        for (file, place, what) in FILES {
             // a scene of the library has him
             if !whole && !tree.files().contains(&format!("{FOLDER}{file}")) {
                 let path = self.path.clone();
-                return Err(RoomError::Lacks {
+                return Err(CustomSceneError::Lacks {
                     path,
                     file,
                     place,
@@ -44,7 +45,7 @@ impl<A: AssetSource> Room<A> {
             }
         }
         if self.second && !tree.files().contains(&format!("{FOLDER}{SECOND}")) {
-            return Err(RoomError::Lacks {
+            return Err(CustomSceneError::Lacks {
                 path: self.path.clone(),
                 file: SECOND,
                 place: "in <body name=\"other_location\">",
@@ -66,7 +67,7 @@ impl<A: AssetSource> Room<A> {
     }
 
     /// Checks that MIMo hangs on the body that is called after his place.
-    fn check_place(&self, tree: &Tree) -> Result<(), RoomError> {
+    fn check_place(&self, tree: &Tree) -> Result<(), CustomSceneError> {
         let hip = |at: &usize| tree.nodes[*at].name == "body" && tree.nodes[*at].attribute("name") == Some(ROOT);
         let around = |node: &Node| node.children.iter().any(hip);
         let Some(at) = tree.nodes.iter().position(around) else {
@@ -85,10 +86,10 @@ impl<A: AssetSource> Room<A> {
         Err(self.at(tree, at, reason))
     }
 
-    fn at(&self, tree: &Tree, at: usize, reason: String) -> RoomError {
+    fn at(&self, tree: &Tree, at: usize, reason: String) -> CustomSceneError {
         let mut place = tree.place(at);
         self.locate(&mut place);
-        RoomError::At {
+        CustomSceneError::At {
             place: Box::new(place),
             reason,
         }

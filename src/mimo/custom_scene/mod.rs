@@ -1,20 +1,18 @@
 //! A custom scene: an MJCF document in which MIMo is included.
 //!
 //! The document is read as if it lay among the documents of the library, so that it can include them by name, beside its own files. The
-//! library adds three that depend on the configuration: MIMo, his settings and his actuators ([`PARTS`]).
+//! library adds three that depend on the configuration: MIMo, his settings and his actuators ([`FILES`]).
 
 mod check;
 mod error;
 mod extra;
-mod other;
 mod same;
+mod second_infant;
 mod unused;
 
-pub use error::RoomError;
-pub(in crate::mimo) use extra::FILE as EXTRA_FILE;
-pub(crate) use other::PREFIX as OTHER_PREFIX;
-pub(in crate::mimo) use other::location;
-pub use unused::{Unused, unused_attributes};
+pub use error::CustomSceneError;
+pub(in crate::mimo) use second_infant::location;
+pub use unused::{UnusedAttribute, unused_attributes};
 
 use std::borrow::Cow;
 use std::path::{Path, PathBuf};
@@ -22,10 +20,12 @@ use std::sync::Arc;
 
 use crate::assets::{AssetError, AssetSource, DirAssets, directory, resolve};
 use crate::config::{Config, Learner, Scene};
+use crate::mimo::document::{EXTRA_FILE, actuators, file_name, include};
 use crate::mimo::embedded;
-use crate::mimo::scene::{SceneError, Version, actuators, include};
+use crate::mimo::error::SceneError;
+use crate::mimo::version::Version;
 use crate::mjcf_loader::{ErrorKind, LoadError, Location};
-use extra::Extra;
+use extra::ExtraElements;
 
 /// Folder of the library's documents, in which a custom scene is read.
 const FOLDER: &str = "babybench/";
@@ -33,11 +33,11 @@ const FOLDER: &str = "babybench/";
 const BESIDE: [&str; 2] = ["tex/", "toys/"];
 /// The library's settings, which several documents include.
 const SETTINGS: &str = "babybench/settings.xml";
-/// The same under another name: a document may include both [`PARTS`] and `base.xml`, and no file twice.
+/// The same under another name: a document may include both [`FILES`] and `base.xml`, and no file twice.
 const SETTINGS_AGAIN: &str = "mimo_options.xml";
 
 /// The files that a custom scene includes: name, place, and contents.
-pub const PARTS: [(&str, &str, &str); 3] = [
+pub const FILES: [(&str, &str, &str); 3] = [
     ("mimo.xml", "in <body name=\"mimo_location\">", "MIMo's body"),
     (
         "mimo_settings.xml",
@@ -48,19 +48,19 @@ pub const PARTS: [(&str, &str, &str); 3] = [
 ];
 
 /// The source of the document and its files.
-enum Own {
+enum DocumentSource {
     /// In this folder of the assets.
     Given(String),
     /// In this folder of the file system.
     Disk { files: DirAssets, folder: PathBuf },
     /// It is what is added to a scene of the library.
-    Added(Extra),
+    Added(ExtraElements),
 }
 
 /// The assets of a custom scene: its files over the library's, which keep their names.
-pub(super) struct Room<A> {
+pub(super) struct CustomScene<A> {
     given: A,
-    own: Own,
+    own: DocumentSource,
     /// Path of the document, as the configuration has it.
     path: String,
     /// The files that depend on the configuration.
@@ -79,8 +79,8 @@ pub(super) struct Room<A> {
 ///
 /// # Errors
 /// A document that does not exist, or has the name of a file of the library.
-pub fn scene_assets(config: &Config, assets: Arc<dyn AssetSource>) -> Result<Arc<dyn AssetSource>, SceneError> {
-    Ok(match Room::open(config, assets.clone())? {
+pub fn scene_assets(config: &Config, assets: Arc<dyn AssetSource>) -> Result<Arc<dyn AssetSource>, CustomSceneError> {
+    Ok(match CustomScene::open(config, assets.clone())? {
         Some(room) => Arc::new(room),
         None => assets,
     })
@@ -88,27 +88,21 @@ pub fn scene_assets(config: &Config, assets: Arc<dyn AssetSource>) -> Result<Arc
 
 /// Returns the assets of a custom scene over some that are borrowed; `None` if the scene is one of the library.
 #[cfg(feature = "eval")]
-pub(crate) fn open_room<'a>(
+pub(crate) fn open_custom_scene<'a>(
     config: &Config,
     assets: &'a dyn AssetSource,
-) -> Result<Option<impl AssetSource + use<'a>>, RoomError> {
-    Room::open(config, assets)
+) -> Result<Option<impl AssetSource + use<'a>>, CustomSceneError> {
+    CustomScene::open(config, assets)
 }
 
-/// Returns the last part of a path.
-pub(super) fn file_name(path: &str) -> &str {
-    let name = Path::new(path).file_name().and_then(|name| name.to_str());
-    name.unwrap_or(path)
-}
-
-impl<A: AssetSource> Room<A> {
+impl<A: AssetSource> CustomScene<A> {
     /// Finds the document of a configuration; `None` if its scene is one of the library.
-    pub fn open(config: &Config, given: A) -> Result<Option<Self>, RoomError> {
+    pub fn open(config: &Config, given: A) -> Result<Option<Self>, CustomSceneError> {
         if !config.scene_extra.is_empty() {
             extra::check(&config.scene_extra)?;
             return Ok(Some(Self {
                 given,
-                own: Own::Added(Extra::new(&config.scene_extra)),
+                own: DocumentSource::Added(ExtraElements::new(&config.scene_extra)),
                 path: extra::SHOWN.to_string(),
                 written: written(config),
                 place: location(config.learner),
@@ -118,7 +112,7 @@ impl<A: AssetSource> Room<A> {
         let Scene::File(path) = &config.scene else {
             return Ok(None);
         };
-        let no_document = |reason: String| RoomError::NoDocument {
+        let no_document = |reason: String| CustomSceneError::NoDocument {
             path: path.clone(),
             reason,
         };
@@ -126,7 +120,7 @@ impl<A: AssetSource> Room<A> {
         let among = resolve("", path).ok();
         let among = among.filter(|path| !embedded().contains(path) && given.contains(path));
         let own = if let Some(path) = among {
-            Own::Given(directory(&path).to_string())
+            DocumentSource::Given(directory(&path).to_string())
         } else if cfg!(all(target_family = "wasm", target_os = "unknown")) {
             let reason = "it is not among the assets, and there is no file system here".to_string();
             return Err(no_document(reason));
@@ -136,7 +130,7 @@ impl<A: AssetSource> Room<A> {
             let files = DirAssets::new(&folder).map_err(|e| no_document(e.to_string()))?;
             let file = files.read(file_name(path));
             file.map_err(|e| no_document(e.to_string()))?;
-            Own::Disk { files, folder }
+            DocumentSource::Disk { files, folder }
         };
         let room = Self {
             given,
@@ -147,7 +141,7 @@ impl<A: AssetSource> Room<A> {
             second: config.learner != Learner::default() || config.other_age.is_some(),
         };
         if room.library(file_name(path)) {
-            Err(RoomError::Shadowed {
+            Err(CustomSceneError::Shadowed {
                 path: path.clone(),
                 name: file_name(path).to_string(),
             })
@@ -159,8 +153,8 @@ impl<A: AssetSource> Room<A> {
     /// Returns whether the library has a document of this name.
     fn library(&self, name: &str) -> bool {
         let path = format!("{FOLDER}{name}");
-        let beside = matches!(&self.own, Own::Given(folder) if format!("{folder}/") == FOLDER);
-        let other = other::original(name).is_some_and(|name| embedded().contains(&format!("{FOLDER}{name}")));
+        let beside = matches!(&self.own, DocumentSource::Given(folder) if format!("{folder}/") == FOLDER);
+        let other = second_infant::original(name).is_some_and(|name| embedded().contains(&format!("{FOLDER}{name}")));
         name == SETTINGS_AGAIN
             || other
             || self.written.iter().any(|(written, _)| *written == name)
@@ -185,10 +179,10 @@ impl<A: AssetSource> Room<A> {
     fn read_own(&self, name: &str) -> Result<Cow<'_, [u8]>, AssetError> {
         let shown = || self.shown(name);
         let answer = match &self.own {
-            Own::Given(folder) => resolve(folder, name).and_then(|path| self.given.read(&path)),
-            Own::Disk { files, .. } => files.read(name),
-            Own::Added(extra) if name == EXTRA_FILE => Ok(Cow::Borrowed(extra.document.as_bytes())),
-            Own::Added(_) => Err(AssetError::NotFound(shown())),
+            DocumentSource::Given(folder) => resolve(folder, name).and_then(|path| self.given.read(&path)),
+            DocumentSource::Disk { files, .. } => files.read(name),
+            DocumentSource::Added(extra) if name == EXTRA_FILE => Ok(Cow::Borrowed(extra.document.as_bytes())),
+            DocumentSource::Added(_) => Err(AssetError::NotFound(shown())),
         };
         answer.map_err(|e| match e {
             AssetError::NotFound(_) => AssetError::NotFound(shown()),
@@ -202,24 +196,26 @@ impl<A: AssetSource> Room<A> {
     fn has_own(&self, name: &str) -> bool {
         match &self.own {
             // files among the library's documents replace them
-            Own::Given(folder) if format!("{folder}/") == FOLDER => {
+            DocumentSource::Given(folder) if format!("{folder}/") == FOLDER => {
                 !embedded().contains(&format!("{FOLDER}{name}")) && self.read_own(name).is_ok()
             }
-            Own::Given(_) => self.read_own(name).is_ok(),
-            Own::Disk { files, .. } => files.contains(name),
-            Own::Added(_) => false,
+            DocumentSource::Given(_) => self.read_own(name).is_ok(),
+            DocumentSource::Disk { files, .. } => files.contains(name),
+            DocumentSource::Added(_) => false,
         }
     }
 
     /// Returns the path of a file beside the document, as the document's path is given.
     fn shown(&self, name: &str) -> String {
         match &self.own {
-            Own::Given(folder) if folder.is_empty() => name.to_string(),
-            Own::Given(folder) => format!("{folder}/{name}"),
-            Own::Disk { folder, .. } if folder == Path::new(".") && !self.path.starts_with('.') => name.to_string(),
-            Own::Disk { folder, .. } => folder.join(name).display().to_string(),
-            Own::Added(_) if name == EXTRA_FILE => extra::SHOWN.to_string(),
-            Own::Added(_) => name.to_string(),
+            DocumentSource::Given(folder) if folder.is_empty() => name.to_string(),
+            DocumentSource::Given(folder) => format!("{folder}/{name}"),
+            DocumentSource::Disk { folder, .. } if folder == Path::new(".") && !self.path.starts_with('.') => {
+                name.to_string()
+            }
+            DocumentSource::Disk { folder, .. } => folder.join(name).display().to_string(),
+            DocumentSource::Added(_) if name == EXTRA_FILE => extra::SHOWN.to_string(),
+            DocumentSource::Added(_) => name.to_string(),
         }
     }
 
@@ -229,7 +225,7 @@ impl<A: AssetSource> Room<A> {
             return;
         };
         match &self.own {
-            Own::Added(extra) if name == EXTRA_FILE => extra.locate(place),
+            DocumentSource::Added(extra) if name == EXTRA_FILE => extra.locate(place),
             _ => place.file = self.shown(name),
         }
     }
@@ -258,7 +254,7 @@ impl<A: AssetSource> Room<A> {
     }
 }
 
-impl<A: AssetSource> AssetSource for Room<A> {
+impl<A: AssetSource> AssetSource for CustomScene<A> {
     fn read(&self, path: &str) -> Result<Cow<'_, [u8]>, AssetError> {
         let path = resolve("", path)?;
         let Some(name) = path.strip_prefix(FOLDER) else {
@@ -281,10 +277,10 @@ impl<A: AssetSource> AssetSource for Room<A> {
         match self.written.iter().find(|(written, _)| *written == name) {
             Some((_, text)) => Ok(Cow::Borrowed(text.as_bytes())),
             None if name == SETTINGS_AGAIN => self.read_library(SETTINGS),
-            None => match other::original(name) {
+            None => match second_infant::original(name) {
                 Some(first) => {
                     let document = self.read_library(&format!("{FOLDER}{first}"))?;
-                    let renamed = other::renamed(&document);
+                    let renamed = second_infant::renamed(&document);
                     renamed.map(Cow::Owned).ok_or(AssetError::NotFound(path))
                 }
                 None => self.read_library(&path),
@@ -302,13 +298,13 @@ impl<A: AssetSource> AssetSource for Room<A> {
 fn written(config: &Config) -> Vec<(&'static str, String)> {
     let version = Version::of(config.behavior).name();
     let settings = SETTINGS_AGAIN.trim_end_matches(".xml");
-    let [body, rest @ ..] = other::written(config);
+    let [body, rest @ ..] = second_infant::written(config);
     let texts = [
         body.1,
         include(settings) + &include(&format!("meta_{version}")),
         actuators(config),
     ];
-    let named = PARTS.iter().map(|(name, ..)| *name).zip(texts).chain(rest);
+    let named = FILES.iter().map(|(name, ..)| *name).zip(texts).chain(rest);
     named
         .map(|(name, text)| (name, format!("<mujocoinclude>\n{text}</mujocoinclude>\n")))
         .collect()

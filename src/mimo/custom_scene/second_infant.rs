@@ -5,10 +5,9 @@ use quick_xml::events::{BytesStart, Event};
 use quick_xml::reader::Reader;
 
 use crate::config::{Config, Learner};
-use crate::mimo::scene::{MIMO, Version, actuators, include};
+use crate::mimo::document::{actuators, include};
+use crate::mimo::version::{MIMO, SECOND_PREFIX, Version};
 
-/// Prefix of the names of the second infant's parts.
-pub(crate) const PREFIX: &str = "other:";
 /// Prefix of the names of his files.
 const FILE: &str = "other_";
 /// The body that places the second infant in the world.
@@ -77,7 +76,7 @@ fn element(start: &BytesStart<'_>) -> Option<BytesStart<'static>> {
     for attribute in start.attributes() {
         let mut attribute = attribute.ok()?;
         if NAMES.contains(&attribute.key.as_ref()) {
-            attribute.value = format!("{PREFIX}{}", attribute.value).into();
+            attribute.value = format!("{SECOND_PREFIX}{}", attribute.value).into();
         }
         out.push_attribute(attribute);
     }

@@ -9,7 +9,7 @@ use crate::text::quoted;
 /// A fault of a custom scene, with its remedy.
 #[derive(Clone, Debug, Error, PartialEq, Eq)]
 #[non_exhaustive]
-pub enum RoomError {
+pub enum CustomSceneError {
     /// The document cannot be read.
     #[error(
         "`scene` is {}: {reason}; `scene` is one of {}, or the path of an MJCF document, which starts at the folder of the \

@@ -3,20 +3,22 @@
 use std::borrow::Cow;
 use std::fmt::Debug;
 
-use super::{Room, RoomError};
+use super::{CustomScene, CustomSceneError};
 use crate::assets::{AssetError, AssetSource};
 use crate::config::{Config, Learner, Scene};
 use crate::mimo::MimoBodies;
-use crate::mimo::scene::{DOCUMENT, SceneError, Source, scene_xml};
+use crate::mimo::document::{DOCUMENT, scene_xml};
+use crate::mimo::error::SceneError;
+use crate::mimo::scene::SceneSource;
 use crate::model::{Material, Model};
 
 /// The first difference: part, array, what was found, what was expected.
-type Difference = (String, &'static str, String, String);
+type SceneDifference = (String, &'static str, String, String);
 
 /// The library's files, without those of a custom scene.
-struct Library<'a, A>(&'a Room<A>);
+struct LibraryAssets<'a, A>(&'a CustomScene<A>);
 
-impl<A: AssetSource> AssetSource for Library<'_, A> {
+impl<A: AssetSource> AssetSource for LibraryAssets<'_, A> {
     fn read(&self, path: &str) -> Result<Cow<'_, [u8]>, AssetError> {
         self.0.read_library(path)
     }
@@ -26,9 +28,9 @@ impl<A: AssetSource> AssetSource for Library<'_, A> {
     }
 }
 
-impl<A: AssetSource> Room<A> {
+impl<A: AssetSource> CustomScene<A> {
     /// Checks that the document left MIMo as he is on the bare floor. `model` is what `source` was compiled into, at the age of `config`.
-    pub fn compare(&self, source: &Source<'_>, model: &Model, config: &Config) -> Result<(), SceneError> {
+    pub fn compare(&self, source: &SceneSource<'_>, model: &Model, config: &Config) -> Result<(), SceneError> {
         let plain = Config {
             scene: Scene::Base,
             scene_extra: String::new(),
@@ -37,8 +39,8 @@ impl<A: AssetSource> Room<A> {
             age: None,
             ..config.clone()
         };
-        let library = Library(self);
-        let usual = Source::of(config, &scene_xml(&plain), DOCUMENT, &library).original()?;
+        let library = LibraryAssets(self);
+        let usual = SceneSource::of(config, &scene_xml(&plain), DOCUMENT, &library).original()?;
         let original;
         let model = match config.age {
             None => model,
@@ -49,7 +51,7 @@ impl<A: AssetSource> Room<A> {
         };
         match difference(model, &usual) {
             None => Ok(()),
-            Some((part, field, found, expected)) => Err(RoomError::Changed {
+            Some((part, field, found, expected)) => Err(CustomSceneError::Changed {
                 path: self.path.clone(),
                 part,
                 field,
@@ -90,17 +92,17 @@ fn look(model: &Model, geom: usize) -> Option<Material> {
 /// Describes a difference. It is one function for all types and kept apart, because modules of the page contain the code of every call.
 #[cold]
 #[inline(never)]
-fn differs(part: String, field: &'static str, found: &dyn Debug, expected: &dyn Debug) -> Difference {
+fn differs(part: String, field: &'static str, found: &dyn Debug, expected: &dyn Debug) -> SceneDifference {
     (part, field, format!("{found:?}"), format!("{expected:?}"))
 }
 
 /// Compares MIMo in a model with MIMo in another.
-fn difference(model: &Model, usual: &Model) -> Option<Difference> {
+fn difference(model: &Model, usual: &Model) -> Option<SceneDifference> {
     in_order(model, usual).or_else(|| by_name(model, usual))
 }
 
 /// Compares what belongs to MIMo's bodies, which nothing can be added to, in the order of the ids.
-fn in_order(model: &Model, usual: &Model) -> Option<Difference> {
+fn in_order(model: &Model, usual: &Model) -> Option<SceneDifference> {
     let own = |model: &Model, carriers: &[usize]| -> Vec<usize> {
         let mimo = MimoBodies::of(model);
         (0..carriers.len()).filter(|&id| mimo.contains(carriers[id])).collect()
@@ -143,7 +145,7 @@ fn in_order(model: &Model, usual: &Model) -> Option<Difference> {
 }
 
 /// Compares what refers to MIMo, beside which a document may have more of the kind.
-fn by_name(model: &Model, usual: &Model) -> Option<Difference> {
+fn by_name(model: &Model, usual: &Model) -> Option<SceneDifference> {
     let missing = |part: String| Some((part, "name", "no such element".to_string(), "one".to_string()));
     for (j, name) in usual.actuator_name.iter().enumerate() {
         let part = format!("the actuator {name:?}");

@@ -1,6 +1,6 @@
 //! Actuators of bodies that are not MIMo's.
 
-use crate::actuation::{Actuation, named};
+use crate::actuation::{Actuation, named, set_controls};
 use crate::model::Model;
 use crate::physics::State;
 use crate::spaces::BoxSpace;
@@ -13,17 +13,17 @@ const UNLIMITED: [f64; 2] = [-1.0, 1.0];
 ///
 /// The controls are within the range of the actuator (`ctrlrange`), or within -1 and 1 if it has none. Observed are these controls,
 /// then angle and velocity (rad, rad/s, or m, m/s) of every joint with one degree of freedom that such an actuator is on.
-pub(super) struct WithOthers {
+pub(super) struct WithExtraActuators {
     mimo: Box<dyn Actuation>,
     space: BoxSpace,
-    others: Vec<usize>,
+    extra: Vec<usize>,
     joints: Vec<usize>,
 }
 
-impl WithOthers {
+impl WithExtraActuators {
     /// Adds the actuators that `mimo` does not drive.
     pub fn new(mimo: Box<dyn Actuation>, model: &Model) -> Self {
-        let others: Vec<usize> = (0..model.nu()).filter(|i| !mimo.actuators().contains(i)).collect();
+        let extra: Vec<usize> = (0..model.nu()).filter(|i| !mimo.actuators().contains(i)).collect();
         let bounds = |&i: &usize| {
             let range = model.actuator_ctrlrange[i];
             // an infinite bound is no limit and cannot be sampled
@@ -34,12 +34,12 @@ impl WithOthers {
             }
         };
         let side = |of: &[f32], k: usize| {
-            let more = others.iter().map(|i| bounds(i)[k] as f32);
+            let more = extra.iter().map(|i| bounds(i)[k] as f32);
             of.iter().copied().chain(more).collect::<Vec<f32>>()
         };
         let space = BoxSpace::new(side(mimo.action_space().low(), 0), side(mimo.action_space().high(), 1));
         let mut joints: Vec<usize> = Vec::new();
-        for &i in &others {
+        for &i in &extra {
             if let Some(joint) = model.actuator_joint(i).filter(|&j| is_single(model, j))
                 && !joints.contains(&joint)
             {
@@ -49,7 +49,7 @@ impl WithOthers {
         Self {
             mimo,
             space,
-            others,
+            extra,
             joints,
         }
     }
@@ -66,7 +66,7 @@ fn is_single(model: &Model, joint: usize) -> bool {
     next == model.jnt_dofadr[joint] + 1
 }
 
-impl Actuation for WithOthers {
+impl Actuation for WithExtraActuators {
     fn action_space(&self) -> &BoxSpace {
         &self.space
     }
@@ -75,13 +75,13 @@ impl Actuation for WithOthers {
         self.mimo.actuators()
     }
 
-    fn others(&self) -> &[usize] {
-        &self.others
+    fn extra_actuators(&self) -> &[usize] {
+        &self.extra
     }
 
     fn action_names(&self, model: &Model) -> Vec<String> {
         let mut names = self.mimo.action_names(model);
-        names.extend(named(model, &self.others, " control"));
+        names.extend(named(model, &self.extra, " control"));
         names
     }
 
@@ -92,9 +92,7 @@ impl Actuation for WithOthers {
     fn set_action(&self, model: &Model, state: &mut State, action: &[f32]) {
         let (own, rest) = action.split_at(self.own().min(action.len()));
         self.mimo.set_action(model, state, own);
-        for (k, (&i, &value)) in self.others.iter().zip(rest).enumerate() {
-            state.ctrl[i] = f64::from(self.space.clip(self.own() + k, value));
-        }
+        set_controls(&mut state.ctrl, &self.space, &self.extra, self.own(), rest);
     }
 
     fn substep(&self, model: &Model, state: &mut State) {
@@ -106,12 +104,12 @@ impl Actuation for WithOthers {
     }
 
     fn observation_len(&self) -> usize {
-        self.mimo.observation_len() + self.others.len() + 2 * self.joints.len()
+        self.mimo.observation_len() + self.extra.len() + 2 * self.joints.len()
     }
 
     fn observation_names(&self, model: &Model) -> Vec<String> {
         let mut names = self.mimo.observation_names(model);
-        names.extend(named(model, &self.others, " control"));
+        names.extend(named(model, &self.extra, " control"));
         for ending in ["angle", "velocity"] {
             names.extend(self.joints.iter().map(|&j| format!("{} {ending}", model.jnt_name[j])));
         }
@@ -121,7 +119,7 @@ impl Actuation for WithOthers {
     fn observe(&self, model: &Model, state: &State, out: &mut [f64]) {
         let (own, rest) = out.split_at_mut(self.mimo.observation_len().min(out.len()));
         self.mimo.observe(model, state, own);
-        let controls = self.others.iter().map(|&i| state.ctrl[i]);
+        let controls = self.extra.iter().map(|&i| state.ctrl[i]);
         let angles = self.joints.iter().map(|&j| state.qpos[model.jnt_qposadr[j]]);
         let velocities = self.joints.iter().map(|&j| state.qvel[model.jnt_dofadr[j]]);
         for (out, value) in rest.iter_mut().zip(controls.chain(angles).chain(velocities)) {

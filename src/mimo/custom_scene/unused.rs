@@ -1,15 +1,16 @@
 //! Attributes of a document that have no effect.
 
-use super::{FOLDER, Room};
+use super::{CustomScene, FOLDER};
 use crate::assets::AssetSource;
 use crate::config::Config;
 use crate::limits::Limits;
-use crate::mimo::scene::{SceneError, document_path, scene_xml};
+use crate::mimo::document::{document_path, scene_xml};
+use crate::mimo::error::SceneError;
 use crate::mjcf_loader::{Location, Tree, elements};
 
 /// An attribute of a custom scene that changes nothing here.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Unused {
+pub struct UnusedAttribute {
     /// Place of the element.
     pub place: Location,
     /// The attribute.
@@ -24,8 +25,8 @@ pub struct Unused {
 ///
 /// # Errors
 /// A document that cannot be read.
-pub fn unused_attributes(config: &Config, assets: &dyn AssetSource) -> Result<Vec<Unused>, SceneError> {
-    let Some(room) = Room::open(config, assets)? else {
+pub fn unused_attributes(config: &Config, assets: &dyn AssetSource) -> Result<Vec<UnusedAttribute>, SceneError> {
+    let Some(room) = CustomScene::open(config, assets)? else {
         return Ok(Vec::new());
     };
     let top = document_path(config);
@@ -53,7 +54,7 @@ pub fn unused_attributes(config: &Config, assets: &dyn AssetSource) -> Result<Ve
             if let Some(meaning) = meaning(&node.name, attribute) {
                 let mut place = tree.place(at);
                 room.locate(&mut place);
-                unused.push(Unused {
+                unused.push(UnusedAttribute {
                     place,
                     attribute: attribute.clone(),
                     meaning,

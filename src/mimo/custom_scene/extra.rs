@@ -3,33 +3,31 @@
 use quick_xml::events::Event;
 use quick_xml::reader::Reader;
 
-use super::RoomError;
+use super::CustomSceneError;
 use crate::mjcf_loader::Location;
 
 /// Name of the text in errors.
 pub(super) const SHOWN: &str = "scene_extra";
-/// The file as which it is read.
-pub(in crate::mimo) const FILE: &str = "scene_extra.xml";
 /// Elements of the world.
 const WORLD: [&str; 6] = ["body", "geom", "site", "camera", "light", "frame"];
 /// Elements that a whole document consists of.
 const ROOTS: [&str; 2] = ["mujoco", "mujocoinclude"];
 
 /// A text of elements as a document that can be included.
-pub(super) struct Extra {
+pub(super) struct ExtraElements {
     pub document: String,
-    inserted: Vec<Inserted>,
+    inserted: Vec<InsertedText>,
 }
 
 /// Characters that the text does not have.
-struct Inserted {
+struct InsertedText {
     /// Line and column of the text that follows them.
     line: usize,
     column: usize,
     length: usize,
 }
 
-impl Extra {
+impl ExtraElements {
     /// Makes a document from a text: elements of the world go into the world, and sections remain sections.
     ///
     /// Faults of the text are for the loader to name, so that nothing is an error here.
@@ -66,7 +64,7 @@ impl Extra {
     fn insert(&mut self, text: &str, at: usize, what: &str) {
         let before = &text[..at];
         let last = before.rsplit('\n').next().unwrap_or_default();
-        self.inserted.push(Inserted {
+        self.inserted.push(InsertedText {
             line: before.matches('\n').count() + 1,
             column: last.chars().count() + 1,
             length: what.len(),
@@ -86,7 +84,7 @@ impl Extra {
 }
 
 /// Refuses text outside of elements, which would add nothing.
-pub(super) fn check(text: &str) -> Result<(), RoomError> {
+pub(super) fn check(text: &str) -> Result<(), CustomSceneError> {
     let mut reader = Reader::from_str(text);
     let mut depth = 0_usize;
     loop {
@@ -103,7 +101,7 @@ pub(super) fn check(text: &str) -> Result<(), RoomError> {
                 let before = text.get(..at).unwrap_or_default();
                 let lead = &found[..found.len() - found.trim_start().len()];
                 let before = format!("{before}{lead}");
-                return Err(RoomError::Stray {
+                return Err(CustomSceneError::Stray {
                     line: before.matches('\n').count() + 1,
                     column: before.rsplit('\n').next().unwrap_or_default().chars().count() + 1,
                     text: stray.to_string(),
@@ -146,7 +144,7 @@ mod tests {
     #[test]
     fn elements_of_the_world_are_put_into_it_and_places_stay() {
         let text = "<body name='a'/> <geom/>\n<!-- more -->\n<asset/> <light/>";
-        let extra = Extra::new(text);
+        let extra = ExtraElements::new(text);
         assert_eq!(
             extra.document,
             "<mujocoinclude><worldbody><body name='a'/> <geom/>\n<!-- more -->\n</worldbody><asset/> \
@@ -168,8 +166,13 @@ mod tests {
             extra.locate(&mut place);
             assert_eq!((place.column, place.file.as_str()), (column, "scene_extra"), "{what}");
         }
-        assert_eq!(Extra::new("<mujocoinclude><asset/></mujocoinclude>").inserted.len(), 0);
-        assert_eq!(Extra::new("").document, "<mujocoinclude></mujocoinclude>");
+        assert_eq!(
+            ExtraElements::new("<mujocoinclude><asset/></mujocoinclude>")
+                .inserted
+                .len(),
+            0
+        );
+        assert_eq!(ExtraElements::new("").document, "<mujocoinclude></mujocoinclude>");
         for text in [
             "",
             " \n",
@@ -186,13 +189,13 @@ mod tests {
         ] {
             let wanted = (line, column, stray.to_string());
             assert!(
-                matches!(check(text), Err(RoomError::Stray { line, column, text }) if (line, column, &text) == (wanted.0, wanted.1, &wanted.2)),
+                matches!(check(text), Err(CustomSceneError::Stray { line, column, text }) if (line, column, &text) == (wanted.0, wanted.1, &wanted.2)),
                 "{text}"
             );
         }
         // errors are left to the loader
         for broken in ["<body", "</body>", "&<geom/>", "\u{e4}<geom/>\u{0}", "<geom></body>"] {
-            Extra::new(broken);
+            ExtraElements::new(broken);
         }
     }
 }
