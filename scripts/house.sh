@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
 # Prints the counts that tell how well the house is kept, of the files that git tracks as they stand: methods of Env, files that know one
-# sense, the project's crates and those it depends on, features, hidden items, type names that are used twice, lines and comments by room,
-# and what is long. The same tree prints the same text.
+# sense, the project's crates and those it depends on, features, hidden items, type names that are used twice, files that import each
+# other in circles, lines and comments by room, and what is long. The same tree prints the same text.
 #   scripts/house.sh
-# Needs cargo (for `cargo tree`; nothing is compiled), once the network for the index of crates.
+# Needs Python 3, and cargo (for `cargo tree`; nothing is compiled), once the network for the index of crates.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 export LC_ALL=C
@@ -127,6 +127,11 @@ done
 title 'Type names that are used more than twice in src'
 git grep -hoE '^(pub(\([a-z: ]*\))? )?(struct|enum|trait|type) [A-Z][A-Za-z0-9]*' -- 'src/*.rs' 'engine/*.rs' | awk '{ print $NF }' | sort | uniq -c |
   awk '$1 > 2 { print $2, $1 }' | sort -k2,2nr -k1,1 | paste -sd, | sed 's/,/, /g'
+
+title 'Files of one room that import each other in a circle (scripts/circles.py --imports prints the imports)'
+circles=$(scripts/circles.py)
+echo "circles: $(grep -c . <<<"$circles")"
+sed 's/^/  /' <<<"$circles"
 
 title 'Lines of src by room (comments: inside functions, also behind code; of 100: for every hundred lines of code)'
 by_room <<<"$src"

@@ -1,12 +1,10 @@
 //! Values of the configuration that exclude each other.
 
+use super::error::Conflict;
 use super::{
     ActuationModel, Behavior, Compat, Config, DelayUnit, Delays, KeyValue, TouchFunction, VisionOutput, defaults,
     latencies, table,
 };
-
-/// A value that another one excludes: key, value, and why.
-pub(super) type Conflict = (&'static str, String, String);
 
 /// Greatest delay, steps of the environment.
 const MAX_DELAY: usize = 1000;

@@ -1,6 +1,6 @@
 //! Defaults of tasks, and their exclusions.
 
-use super::conflicts::Conflict;
+use super::error::Conflict;
 use super::table::KEYS;
 use super::{ActuationModel, Behavior, BodyParts, Compat, Config, Learner, Scene, TouchFunction, TouchResponse};
 use crate::text::quoted;

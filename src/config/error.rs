@@ -22,6 +22,9 @@ impl fmt::Display for Location {
     }
 }
 
+/// A value that another one excludes: key, value, and why.
+pub(super) type Conflict = (&'static str, String, String);
+
 /// A reason why a configuration was refused. Every message names the location, the key, the value and what is allowed.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]

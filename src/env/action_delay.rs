@@ -1,10 +1,8 @@
 //! The delay between an action and the actuators, and the noise of the motors.
 
-use crate::actuation::Actuation;
-use crate::config::{ActuationModel, Compat};
-use crate::env::Blueprint;
+use crate::config::{ActuationModel, Compat, Config};
 use crate::sensors::transform::DelayLine;
-use crate::spaces::NumpyRng;
+use crate::spaces::{BoxSpace, NumpyRng};
 
 /// Passes actions to the actuators, immediately or after a delay, as they are or with noise that grows with them.
 #[derive(Clone, Debug)]
@@ -19,9 +17,8 @@ pub(super) struct ActionDelay {
 }
 
 impl ActionDelay {
-    pub fn new(blueprint: &Blueprint, actuation: &dyn Actuation) -> Self {
-        let (config, space) = (blueprint.config(), actuation.action_space());
-        let steps = blueprint.action_delay();
+    /// Creates the delay of a configuration, by a number of steps.
+    pub fn new(config: &Config, space: &BoxSpace, steps: usize) -> Self {
         let centred = config.actuation_model == ActuationModel::Positional;
         let bounds = space.low().iter().zip(space.high());
         Self {

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use crate::env::{BehaviorInfo, PerEyeAndHand, PerHand};
+use crate::env::{PerEyeAndHand, PerHand};
 use crate::model::Model;
 
 /// Additions to the reference's information. The pickles of logs leave them out.
@@ -17,7 +17,7 @@ pub struct InfoDetails {
     /// Age of the pictures of the eyes, s, without their delay, with a [`vision_rate`](crate::Config::vision_rate). `None` right after a
     /// reset or a restored snapshot.
     pub vision_age: Option<f64>,
-    /// Both ways to count hands in view, for the behavior `hand_regard`. [`BehaviorInfo`] holds one of them, by
+    /// Both ways to count hands in view, for the behavior `hand_regard`. [`BehaviorInfo`](crate::env::BehaviorInfo) holds one of them, by
     /// [`Compat`](crate::config::Compat).
     pub regards: Option<RegardCounts>,
 }
@@ -32,10 +32,9 @@ pub struct RegardCounts {
 }
 
 impl InfoDetails {
-    /// Reserves room for the names of all parts, so that no step allocates.
-    pub(crate) fn reserve(&mut self, behavior: &BehaviorInfo, names: &PartNames) {
-        let room = |_| Vec::with_capacity(names.0.len());
-        self.touched_parts = behavior.touches().map(|_| PerHand::from_fn(room));
+    /// Reserves space for the names of all parts, so that no step allocates.
+    pub(crate) fn reserve(&mut self, names: &PartNames) {
+        self.touched_parts = Some(PerHand::from_fn(|_| Vec::with_capacity(names.0.len())));
         self.gaze_angles = None;
     }
 
@@ -47,9 +46,9 @@ impl InfoDetails {
         (self.gaze_angles, self.vision_age, self.regards) = (None, None, None);
     }
 
-    /// Updates the names from the lists of geoms, which have grown or been cleared.
-    pub(crate) fn name_parts(&mut self, behavior: &BehaviorInfo, names: &PartNames) {
-        let Some(touches) = behavior.touches() else {
+    /// Updates the names from the geoms that each hand has touched, if the behavior lists them. The lists have grown or been cleared.
+    pub(crate) fn name_parts(&mut self, touches: Option<[&[usize]; 2]>, names: &PartNames) {
+        let Some(touches) = touches else {
             self.touched_parts = None;
             return;
         };

@@ -2,23 +2,13 @@
 
 use std::sync::Arc;
 
+use crate::env::senses::PictureStatus;
 use crate::env::{Env, EnvError, Observation, Senses};
 use crate::physics::State;
 use crate::render::{ImageBuffers, RenderRequest, SharedGpu, draw_on};
 use crate::sensors::EyeImages;
 use crate::sensors::transform::Sense;
 use crate::spaces::NumpyRng;
-
-/// The state of the picture of the last observation.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum PictureStatus {
-    /// Drawn, in the observation.
-    Drawn,
-    /// Not drawn yet.
-    Waiting,
-    /// Not drawn before the scene moved on.
-    Gone,
-}
 
 impl Senses {
     /// Draws what the eyes see, if they sample now, and transforms it.

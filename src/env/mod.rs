@@ -5,6 +5,7 @@ mod action_delay;
 mod age;
 mod blueprint;
 mod by_hand;
+mod changeable;
 mod clock;
 mod details;
 mod engines;
@@ -19,6 +20,7 @@ mod notices;
 pub(crate) mod observation;
 mod outcome;
 mod paths;
+mod per_hand;
 mod physics;
 mod pipeline;
 mod placed;
@@ -37,6 +39,7 @@ mod workspace;
 
 pub use blueprint::{Blueprint, BlueprintOptions};
 pub use by_hand::ManualControl;
+pub use changeable::{CHANGEABLE, ModelChangeError};
 pub use details::{InfoDetails, PartNames, RegardCounts};
 pub use error::EnvError;
 pub use eyes::draw_eyes;
@@ -46,13 +49,12 @@ pub(crate) use fields::{InfoSource, PARTS, STEPS};
 pub use info::Info;
 #[cfg(feature = "eval")]
 pub(crate) use info::SCORED_PARTS;
-pub use info::{BehaviorInfo, EYE_HAND_PAIRS, Measures, PerEyeAndHand, PerHand, TaskInfo};
-pub use model_change::CHANGEABLE;
-pub use model_change::ModelChangeError;
+pub use info::{BehaviorInfo, Measures, TaskInfo};
 pub use observation::{Observation, Step};
 #[cfg(feature = "eval")]
 pub(crate) use outcome::reports_outcome;
 pub use paths::PathError;
+pub use per_hand::{EYE_HAND_PAIRS, PerEyeAndHand, PerHand};
 pub use second_infant::SecondInfant;
 pub use senses::Senses;
 pub use sensing::SensesMut;
@@ -170,7 +172,7 @@ impl Env {
         clear(&*task, &mut info);
         Ok(Self {
             physics: Physics::new(blueprint, &*actuation),
-            action_delay: ActionDelay::new(blueprint, &*actuation),
+            action_delay: ActionDelay::new(config, actuation.action_space(), blueprint.action_delay()),
             senses: Senses::new(blueprint, blueprint.task_sizes())?,
             goals: Goals::new(blueprint.task_sizes()),
             rng: NumpyRng::seed(config.seed),

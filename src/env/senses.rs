@@ -6,7 +6,6 @@ use crate::actuation::Actuation;
 use crate::config::VisionOutput;
 use crate::env::blueprint::SharedTables;
 use crate::env::clock::Clock;
-use crate::env::eyes::PictureStatus;
 use crate::env::pipeline::Pipeline;
 use crate::env::task::TaskSizes;
 use crate::env::{Blueprint, EnvError, Observation, missing_camera};
@@ -22,6 +21,17 @@ use crate::spaces::{NumpyRng, Values};
 
 /// The images of eyes without any picture yet.
 static NO_IMAGES: [EyeImages; 2] = [EyeImages::NONE, EyeImages::NONE];
+
+/// The state of the picture of the last observation.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum PictureStatus {
+    /// Drawn, in the observation.
+    Drawn,
+    /// Not drawn yet.
+    Waiting,
+    /// Not drawn before the scene moved on.
+    Gone,
+}
 
 /// The active senses of an environment, with their last observations: [`Env::senses`](crate::Env::senses).
 #[derive(Clone)]

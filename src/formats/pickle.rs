@@ -17,6 +17,7 @@
 
 mod construct;
 mod machine;
+mod memo;
 mod numbers;
 mod objects;
 mod records;

@@ -2,7 +2,7 @@
 
 use maud::html;
 
-use super::page::embed;
+use super::svg::embed;
 use crate::assets::AssetSource;
 use crate::formats::png::{ColorType, png};
 use crate::mimo::BodyFigures;

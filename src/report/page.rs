@@ -3,8 +3,6 @@
 mod evaluation;
 mod touch;
 
-use base64::Engine as _;
-use base64::engine::general_purpose::STANDARD;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 use self::evaluation::evaluation_section;
@@ -25,12 +23,6 @@ const HANDS: [(&str, &str, [f32; 3]); 2] = [
     ("right hand", "right", [0.894, 0.341, 0.18]),
     ("left hand", "left", [0.18, 0.525, 0.87]),
 ];
-/// Returns a file as a `data:` address.
-pub(super) fn embed(kind: &str, bytes: &[u8]) -> String {
-    let mut out = format!("data:image/{kind};base64,");
-    STANDARD.encode_string(bytes, &mut out);
-    out
-}
 
 fn percent(share: f64) -> String {
     format!("{:.1} %", 100.0 * share)

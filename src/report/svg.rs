@@ -1,8 +1,8 @@
 //! Charts as files of their own.
 
+use base64::Engine as _;
+use base64::engine::general_purpose::STANDARD;
 use maud::{Markup, html};
-
-use super::page::embed;
 
 /// The page's style of charts, on white paper. Names of fonts are those of programs that draw such files.
 const STYLE: &str = "svg{font:12px Helvetica,Arial,sans-serif;color:#1d2430}\
@@ -39,6 +39,13 @@ pub(super) fn download(chart: &Markup, [width, height]: [f64; 2], legend: &[(&st
     }
     file.push_str("</svg>\n");
     html! { a.save href=(embed("svg+xml", file.as_bytes())) download=(format!("{name}.svg")) { "save as SVG" } }
+}
+
+/// Returns a file as a `data:` address.
+pub(super) fn embed(kind: &str, bytes: &[u8]) -> String {
+    let mut out = format!("data:image/{kind};base64,");
+    STANDARD.encode_string(bytes, &mut out);
+    out
 }
 
 #[cfg(test)]

@@ -19,7 +19,8 @@ use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-pub use manifest::{ArrayDescription, EpisodeDescription, GeomDescription, JointDescription, Manifest};
+pub use describe::{GeomDescription, JointDescription};
+pub use manifest::{ArrayDescription, EpisodeDescription, Manifest};
 pub use many::VectorRecorder;
 pub use read::{Record, RepeatResult};
 use rows::EpisodeRows;

@@ -5,7 +5,7 @@ use crate::sensors::transform::Sense;
 use crate::sensors::{ObservationEntry, observation_entries};
 use crate::spaces::{Number, ValuesMut};
 use crate::vector::VectorError;
-use crate::vector::rows::RowLayout;
+use crate::vector::layout::RowLayout;
 
 macro_rules! buffers {
     (

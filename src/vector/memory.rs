@@ -2,7 +2,7 @@
 
 use crate::config::VisionOutput;
 use crate::env::Env;
-use crate::vector::rows::RowLayout;
+use crate::vector::layout::RowLayout;
 use crate::vector::{AutoresetMode, VectorError, VectorOptions, options};
 
 /// The limit on systems that do not report their memory.

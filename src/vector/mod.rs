@@ -24,6 +24,7 @@ mod buffers;
 mod error;
 mod exchange;
 mod infos;
+mod layout;
 mod look;
 mod memory;
 pub(crate) mod options;
@@ -44,8 +45,9 @@ use crate::env::{Blueprint, Env, EnvError};
 use crate::spaces::{BoxSpace, ObservationSpace};
 use crate::threads::ThreadPool;
 use infos::InfoRows;
+use layout::RowLayout;
 use memory::MemoryEstimate;
-use rows::{RowLayout, VectorRows};
+use rows::VectorRows;
 use slot::Slot;
 
 /// Many environments, stepped together or in the order in which they finish.

@@ -5,7 +5,8 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 
 use crate::env::{BehaviorInfo, Env, EnvError, Info, Observation, PerHand, ScratchUse, draw_eyes};
 use crate::threads::Job;
-use crate::vector::rows::{RowLayout, VectorRows};
+use crate::vector::layout::RowLayout;
+use crate::vector::rows::VectorRows;
 use crate::vector::{AutoresetMode, make};
 
 /// The next command of an environment.

@@ -81,8 +81,8 @@ impl Task for SelfTouch {
             _ => {}
         }
         if info.details.touched_parts.is_none() {
-            info.details.reserve(&info.behavior, &self.names);
+            info.details.reserve(&self.names);
         }
-        info.details.name_parts(&info.behavior, &self.names);
+        info.details.name_parts(info.behavior.touches(), &self.names);
     }
 }

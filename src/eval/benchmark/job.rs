@@ -78,6 +78,36 @@ pub struct RunResult {
     pub steps_per_second: f64,
 }
 
+impl BenchmarkPlan {
+    /// Returns the runs, in order: by configuration, age, policy, seed.
+    ///
+    /// # Errors
+    /// A configuration that cannot be read or is not allowed at an age.
+    pub fn jobs(&self) -> Result<Vec<BenchmarkJob>, BenchmarkError> {
+        let mut out = Vec::new();
+        for file in &self.configs {
+            let config = Config::from_file(self.dir.join(file))?;
+            let stem = Path::new(file)
+                .file_stem()
+                .unwrap_or_default()
+                .to_string_lossy()
+                .into_owned();
+            for &age in &self.ages {
+                let config = Config {
+                    age: age.or(config.age),
+                    ..config.clone()
+                };
+                for policy in &self.policies {
+                    for seed in 0..self.seeds {
+                        out.push(BenchmarkJob::new(&stem, &config, policy, seed, self));
+                    }
+                }
+            }
+        }
+        Ok(out)
+    }
+}
+
 impl BenchmarkJob {
     pub(super) fn new(stem: &str, config: &Config, policy: &str, seed: u64, plan: &BenchmarkPlan) -> Self {
         let plain = |text: &str| -> String {

@@ -5,8 +5,8 @@ use std::path::{Path, PathBuf};
 use granit_parser::{Event, Options, Parser};
 use serde::{Deserialize, Serialize};
 
-use super::{BenchmarkError, BenchmarkJob};
-use crate::config::{Config, MAX_AGE};
+use super::BenchmarkError;
+use crate::config::MAX_AGE;
 use crate::files;
 use crate::limits::Limits;
 use crate::text::quoted;
@@ -140,34 +140,6 @@ impl BenchmarkPlan {
         let runs = (self.configs.len() * self.ages.len() * self.policies.len()) as u64;
         let steps = self.steps.saturating_add(self.evaluate.saturating_mul(1000));
         runs.saturating_mul(self.seeds).saturating_mul(steps)
-    }
-
-    /// Returns the runs, in order: by configuration, age, policy, seed.
-    ///
-    /// # Errors
-    /// A configuration that cannot be read or is not allowed at an age.
-    pub fn jobs(&self) -> Result<Vec<BenchmarkJob>, BenchmarkError> {
-        let mut out = Vec::new();
-        for file in &self.configs {
-            let config = Config::from_file(self.dir.join(file))?;
-            let stem = Path::new(file)
-                .file_stem()
-                .unwrap_or_default()
-                .to_string_lossy()
-                .into_owned();
-            for &age in &self.ages {
-                let config = Config {
-                    age: age.or(config.age),
-                    ..config.clone()
-                };
-                for policy in &self.policies {
-                    for seed in 0..self.seeds {
-                        out.push(BenchmarkJob::new(&stem, &config, policy, seed, self));
-                    }
-                }
-            }
-        }
-        Ok(out)
     }
 }
 

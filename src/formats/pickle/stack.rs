@@ -4,9 +4,9 @@ use std::borrow::Cow;
 use std::collections::BTreeMap;
 
 use super::PickleError;
+use super::memo::recalled;
 use super::numbers::Dtype;
 use super::objects::{PickleObject, StackItem};
-use super::records::recalled;
 use crate::limits::Limits;
 
 /// The outcome of an opcode.

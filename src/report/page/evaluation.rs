@@ -2,12 +2,13 @@
 
 use maud::{Markup, html};
 
-use super::{embed, grouped, percent, step_time};
+use super::{grouped, percent, step_time};
 use crate::config::{Behavior, Compat};
 use crate::env::{BehaviorInfo, EYE_HAND_PAIRS, Info, Outcome, PartNames};
 use crate::eval::Score;
 use crate::report::run::{EvaluationEpisode, RunContents};
 use crate::report::strip::{frames, moments};
+use crate::report::svg::embed;
 
 /// The counters of a single evaluation episode. Under `compat: reference` counters and lists continue from episode to episode.
 #[derive(Default)]

@@ -159,7 +159,7 @@ mod tests {
                     details: details.clone(),
                 };
                 if let Some(names) = names {
-                    details.name_parts(&info.behavior, names);
+                    details.name_parts(info.behavior.touches(), names);
                 }
                 let (mut line, mut expected) = (Vec::new(), Vec::new());
                 maker.line(&mut line, &info).expect("a line");

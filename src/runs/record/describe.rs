@@ -2,14 +2,41 @@
 
 use std::path::Path;
 
+use serde::{Deserialize, Serialize};
+
 use super::RecordError;
-use super::manifest::{GeomDescription, JointDescription};
 use super::rows::MODEL;
 use crate::config::Part;
 use crate::env::{Env, PartNames};
 use crate::formats::npz::NpzWriter;
 use crate::mimo::{MimoBodies, body_kind};
 use crate::model::Model;
+
+/// One of MIMo's joints.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct JointDescription {
+    /// Its name.
+    pub name: String,
+    /// Its index into `qpos`.
+    pub qpos: usize,
+    /// Its index into `qvel`.
+    pub dof: usize,
+}
+
+/// A geom of the scene.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct GeomDescription {
+    /// Its name as a part of the body; see [`PartNames`](crate::env::PartNames).
+    pub part: String,
+    /// The body that carries it.
+    pub body: String,
+    /// The region of MIMo's body: head, trunk, arm, hand, leg or foot; none if it is not his.
+    pub region: Option<String>,
+    /// The side of MIMo's body: right or left; none in the middle.
+    pub side: Option<String>,
+    /// The hand that it touches with: right or left, for palms; none for all others.
+    pub palm_of: Option<String>,
+}
 
 /// Describes MIMo's joints, in the order of the observation.
 pub(super) fn limb_joints(env: &Env) -> Vec<JointDescription> {

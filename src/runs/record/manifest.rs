@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 
 use super::RecordOptions;
-use super::describe::{geoms, limb_joints, meaning};
+use super::describe::{GeomDescription, JointDescription, geoms, limb_joints, meaning};
 use crate::config::Config;
 use crate::env::Env;
 use crate::sensors::EYES;
@@ -53,32 +53,6 @@ pub struct Manifest {
     pub arrays: BTreeMap<String, ArrayDescription>,
     /// The episodes, by number.
     pub episodes: Vec<EpisodeDescription>,
-}
-
-/// One of MIMo's joints.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub struct JointDescription {
-    /// Its name.
-    pub name: String,
-    /// Its index into `qpos`.
-    pub qpos: usize,
-    /// Its index into `qvel`.
-    pub dof: usize,
-}
-
-/// A geom of the scene.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub struct GeomDescription {
-    /// Its name as a part of the body; see [`PartNames`](crate::env::PartNames).
-    pub part: String,
-    /// The body that carries it.
-    pub body: String,
-    /// The region of MIMo's body: head, trunk, arm, hand, leg or foot; none if it is not his.
-    pub region: Option<String>,
-    /// The side of MIMo's body: right or left; none in the middle.
-    pub side: Option<String>,
-    /// The hand that it touches with: right or left, for palms; none for all others.
-    pub palm_of: Option<String>,
 }
 
 /// An array of the archives.

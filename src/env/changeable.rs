@@ -1,0 +1,122 @@
+//! The numbers of a model that may change while an environment runs.
+
+use thiserror::Error;
+
+use crate::model::Arrays;
+use crate::physics::{Params, Row};
+
+/// An error of [`Env::change_model`](crate::Env::change_model).
+#[derive(Clone, Debug, Error, PartialEq)]
+#[non_exhaustive]
+pub enum ModelChangeError {
+    /// Anything else was changed.
+    #[error(
+        "the model was changed in what cannot change while an environment lives; what can are the numbers of {}: change the document or the \
+         configuration for the rest, and make another environment",
+        CHANGEABLE.join(", ")
+    )]
+    Fixed,
+    /// A number is not finite.
+    #[error("{name}, number {index}, is {value}: the model has finite numbers only")]
+    NotFinite {
+        /// Name of the array.
+        name: &'static str,
+        /// Index of the number in the array, row by row.
+        index: usize,
+        /// Its value, as text.
+        value: String,
+    },
+    /// A number is too small.
+    #[error("{name}, number {index}, is {value}: it must be {least}")]
+    TooSmall {
+        /// Name of the array.
+        name: &'static str,
+        /// Index of the number in the array, row by row.
+        index: usize,
+        /// Its value, as text.
+        value: String,
+        /// The bound.
+        least: &'static str,
+    },
+    /// Muscles write the gears in each step.
+    #[error(
+        "actuator_gear belongs to the muscles, which set it in each step: it can be changed with other actuation models only"
+    )]
+    Muscles,
+}
+
+/// Lists the numbers that a program may change: first those of the parameters, with their name there, then those of the model.
+macro_rules! changeable {
+    (parameters { $($own:literal = $($path:ident).+, $field:ident;)* } model { $($name:literal = $($at:ident).+;)* }) => {
+        /// The names of the arrays that [`Env::change_model`](crate::Env::change_model) may change, as in [`Arrays`].
+        pub const CHANGEABLE: &[&str] = &[$($own,)* $($name),*];
+
+        pub(super) fn rows(arrays: &Arrays) -> Vec<&[f64]> {
+            let mut out = Vec::with_capacity(CHANGEABLE.len());
+            $(arrays.$($path).+.numbers(&mut out);)*
+            $(arrays.$($at).+.numbers(&mut out);)*
+            out
+        }
+
+        pub(super) fn rows_mut(arrays: &mut Arrays) -> Vec<&mut [f64]> {
+            let mut out = Vec::with_capacity(CHANGEABLE.len());
+            $(arrays.$($path).+.numbers_mut(&mut out);)*
+            $(arrays.$($at).+.numbers_mut(&mut out);)*
+            out
+        }
+
+        pub(super) fn parameters(params: &Params) -> Vec<&[f64]> {
+            let mut out = Vec::with_capacity(CHANGEABLE.len());
+            $(params.$field.numbers(&mut out);)*
+            out
+        }
+
+        pub(super) fn parameters_mut(params: &mut Params) -> Vec<&mut [f64]> {
+            let mut out = Vec::with_capacity(CHANGEABLE.len());
+            $(params.$field.numbers_mut(&mut out);)*
+            out
+        }
+    };
+}
+
+changeable! {
+    parameters {
+        "opt.gravity" = opt.gravity, gravity;
+        "body_mass" = body_mass, body_mass;
+        "body_inertia" = body_inertia, body_inertia;
+        "body_invweight0" = body_invweight0, body_invweight0;
+        "dof_invweight0" = dof_invweight0, dof_invweight0;
+        "dof_damping" = dof_damping, dof_damping;
+        "jnt_stiffness" = jnt_stiffness, jnt_stiffness;
+        "actuator_gear" = actuator_gear, actuator_gear;
+        "geom_size" = geom_size, geom_size;
+        "geom_rbound" = geom_rbound, geom_rbound;
+    }
+    model {
+        "opt.timestep" = opt.timestep;
+        "opt.impratio" = opt.impratio;
+        "opt.density" = opt.density;
+        "opt.viscosity" = opt.viscosity;
+        "opt.wind" = opt.wind;
+        "jnt_solref" = jnt_solref;
+        "jnt_solimp" = jnt_solimp;
+        "dof_armature" = dof_armature;
+        "dof_frictionloss" = dof_frictionloss;
+        "dof_solref" = dof_solref;
+        "dof_solimp" = dof_solimp;
+        "geom_friction" = geom_friction;
+        "geom_solmix" = geom_solmix;
+        "geom_solref" = geom_solref;
+        "geom_solimp" = geom_solimp;
+        "geom_margin" = geom_margin;
+        "geom_gap" = geom_gap;
+        "pair_friction" = pair_friction;
+        "pair_solref" = pair_solref;
+        "pair_solreffriction" = pair_solreffriction;
+        "pair_solimp" = pair_solimp;
+        "pair_margin" = pair_margin;
+        "pair_gap" = pair_gap;
+        "eq_solref" = eq_solref;
+        "eq_solimp" = eq_solimp;
+    }
+}
