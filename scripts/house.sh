@@ -131,7 +131,7 @@ git grep -hoE '^(pub(\([a-z: ]*\))? )?(struct|enum|trait|type) [A-Z][A-Za-z0-9]*
 title 'Files of one room that import each other in a circle (scripts/circles.py --imports prints the imports)'
 circles=$(scripts/circles.py)
 echo "circles: $(grep -c . <<<"$circles")"
-sed 's/^/  /' <<<"$circles"
+while read -r circle; do echo "  $circle"; done <<<"$circles"
 
 title 'Lines of src by room (comments: inside functions, also behind code; of 100: for every hundred lines of code)'
 by_room <<<"$src"
