@@ -135,7 +135,7 @@ impl BehaviorInfo {
         }
     }
 
-    /// Returns the four counters, in the order of [`EYE_HAND_PAIRS`], for the behavior `hand_regard`.
+    /// Returns the four counters, in the order of [`EYE_HAND_PAIRS`](crate::env::EYE_HAND_PAIRS), for the behavior `hand_regard`.
     pub fn regards(&self) -> Option<[u64; 4]> {
         match self {
             Self::HandRegard { counts } => Some(counts.to_array()),

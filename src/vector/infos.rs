@@ -13,9 +13,9 @@ pub struct Infos<'a> {
     pub touches: Option<&'a [u8]>,
     /// Steps with a hand in view, (N, 4), in the order of [`EYE_HAND_PAIRS`](crate::env::EYE_HAND_PAIRS), for the behavior `hand_regard`.
     pub regards: Option<&'a [u64]>,
-    /// The same, counted as the API page describes it: [`RegardCounts::page`](crate::env::Regards::page).
+    /// The same, counted as the API page describes it: [`RegardCounts::page`](crate::env::RegardCounts::page).
     pub page_regards: Option<&'a [u64]>,
-    /// The same, counted as the starter kit computes it: [`RegardCounts::kit`](crate::env::Regards::kit).
+    /// The same, counted as the starter kit computes it: [`RegardCounts::kit`](crate::env::RegardCounts::kit).
     pub kit_regards: Option<&'a [u64]>,
     /// Age of the pictures of the eyes (N), s, with a [`vision_rate`](crate::Config::vision_rate).
     pub vision_age: Option<&'a [f64]>,

@@ -11,7 +11,7 @@ pub enum AutoresetMode {
     #[default]
     NextStep,
     /// The last step resets. It returns the first observation of the next episode, and keeps the last one of the old
-    /// ([`VectorStep::finals`](super::Batch::finals)).
+    /// ([`VectorStep::finals`](super::VectorStep::finals)).
     SameStep,
     /// The caller resets ([`VectorEnv::reset_where`](super::VectorEnv::reset_where)).
     Disabled,
