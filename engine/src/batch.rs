@@ -2,8 +2,9 @@
 
 use mjcf_sim_physics::{Batch, BatchError, State};
 
-/// Steps every state of a batch `steps` times, as [`Batch::rollout`] does, on at most `threads` threads, which it starts and waits for. They
-/// call `control` at the same time. The bits do not depend on their number. In WebAssembly the caller steps all states.
+/// Steps every state of a batch `steps` times, as [`Batch::rollout`] does, on at most `threads` threads and no more than the machine has
+/// cores. It starts them and waits for them. They call `control` at the same time. The bits do not depend on their number. In WebAssembly the
+/// caller steps all states.
 ///
 /// ```
 /// use mjcf_sim::physics::{Batch, SoftOptions};
@@ -21,13 +22,15 @@ use mjcf_sim_physics::{Batch, BatchError, State};
 /// As [`Batch::rollout`].
 ///
 /// # Panics
-/// Where `control` does.
+/// If `control` panics, or the operating system cannot start a thread.
 pub fn rollout_on(
     batch: &mut Batch,
     threads: usize,
     steps: usize,
     control: impl Fn(usize, usize, &mut State) + Sync,
 ) -> Result<(), BatchError> {
+    let cores = std::thread::available_parallelism().map_or(1, usize::from);
+    let threads = threads.min(cores);
     if threads <= 1 || cfg!(target_arch = "wasm32") {
         return batch.rollout(steps, control);
     }

@@ -63,6 +63,15 @@ pub enum SimulationError {
     },
 }
 
+/// Checks the length of a vector of the state, which a program may replace.
+fn fits(what: &'static str, found: usize, expected: usize) -> Result<(), EngineError> {
+    if found == expected {
+        Ok(())
+    } else {
+        Err(EngineError::Shape { what, found, expected })
+    }
+}
+
 /// Lists names for a message.
 fn listed(names: &[String]) -> String {
     let named: Vec<_> = names
@@ -179,13 +188,15 @@ impl Simulation {
     /// Returns the reading of a sensor at the start of the last step, or at the last [`forward`](Self::forward).
     ///
     /// # Errors
-    /// The model has no sensor with this name.
+    /// The model has no sensor with this name, or [`state`](Self::state) is of another model.
     pub fn sensor(&self, name: &str) -> Result<&[f64], SimulationError> {
         let model = self.engine.model();
         let sensor = model
             .sensor(name)
             .ok_or_else(|| unknown("sensor", name, model.sensor_name.clone()))?;
         let start = model.sensor_adr[sensor];
+        let (found, expected) = (self.state.sensordata.len(), model.nsensordata());
+        fits("sensordata", found, expected)?;
         Ok(&self.state.sensordata[start..start + model.sensor_dim[sensor]])
     }
 
@@ -201,11 +212,12 @@ impl Simulation {
     /// Sets the control of an actuator for the steps to come.
     ///
     /// # Errors
-    /// The model has no actuator with this name.
+    /// The model has no actuator with this name, or [`state`](Self::state) is of another model.
     pub fn set_control(&mut self, actuator: &str, value: f64) -> Result<(), SimulationError> {
         let model = self.engine.model();
         let id = model.actuator(actuator);
         let id = id.ok_or_else(|| unknown("actuator", actuator, model.actuator_name.clone()))?;
+        fits("ctrl", self.state.ctrl.len(), model.nu())?;
         self.state.ctrl[id] = value;
         Ok(())
     }

@@ -255,7 +255,10 @@ impl Env {
     fn observe_second<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<f64>>> {
         let mut guard = self.guard()?;
         let Inner { env, second, felt, .. } = guard.open()?;
-        second.as_ref().ok_or_else(no_second)?.observe(env.state(), felt);
+        let second = second.as_ref().ok_or_else(no_second)?;
+        second
+            .observe(env.state(), felt)
+            .map_err(|error| babybench::EnvError::from(error).into_exception())?;
         Ok(PyArray1::from_slice(py, felt))
     }
 

@@ -5,7 +5,7 @@ use crate::config::ActuationModel;
 use crate::env::{Env, EnvError, check_numbers};
 use crate::mimo::{MimoBodies, MimoJoints};
 use crate::model::{Model, SensorType};
-use crate::physics::State;
+use crate::physics::{EngineError, State};
 use crate::spaces::BoxSpace;
 
 /// The second infant in the scene of an environment, which a second policy moves and observes: [`Env::second_infant`].
@@ -20,6 +20,8 @@ pub struct SecondInfant {
     joints: MimoJoints,
     /// The first value of each sensor in `sensordata`.
     sensor_adr: Vec<usize>,
+    /// Numbers of controls, positions, velocities and sensor values of the scene's model.
+    sizes: [usize; 4],
 }
 
 impl SecondInfant {
@@ -46,6 +48,7 @@ impl SecondInfant {
             actuators,
             joints: bodies.joints(),
             sensor_adr: sensors.map(|i| model.sensor_adr[i]).collect(),
+            sizes: sizes(model),
         })
     }
 
@@ -73,11 +76,12 @@ impl SecondInfant {
     /// next one, or a reset.
     ///
     /// # Errors
-    /// An action of wrong length or with numbers that are not finite, which changes nothing.
+    /// An action of wrong length or with numbers that are not finite, or an environment with another scene; nothing is changed.
     pub fn act(&self, env: &mut Env, action: &[f32]) -> Result<(), EnvError> {
         let actuator = |index: usize| self.actuators.get(index).copied();
         check_numbers(env.model(), action, self.actuators.len(), actuator)?;
         env.physics.check_shape()?;
+        self.fits(sizes(env.model()))?;
         set_controls(
             &mut env.physics.state_mut().ctrl,
             &self.space,
@@ -89,14 +93,40 @@ impl SecondInfant {
     }
 
     /// Writes its observation in a state of the scene, replacing the contents of `out`.
-    pub fn observe(&self, state: &State, out: &mut Vec<f64>) {
+    ///
+    /// # Errors
+    /// A state of another scene.
+    pub fn observe(&self, state: &State, out: &mut Vec<f64>) -> Result<(), EngineError> {
+        self.fits([
+            state.ctrl.len(),
+            state.qpos.len(),
+            state.qvel.len(),
+            state.sensordata.len(),
+        ])?;
         out.clear();
         out.extend(self.joints.qpos.iter().map(|&q| state.qpos[q]));
         out.extend(self.joints.dof.iter().map(|&d| state.qvel[d]));
         for &at in &self.sensor_adr {
             out.extend_from_slice(&state.sensordata[at..at + 3]);
         }
+        Ok(())
     }
+
+    /// Checks that these are the sizes of its scene.
+    fn fits(&self, found: [usize; 4]) -> Result<(), EngineError> {
+        let named = ["ctrl", "qpos", "qvel", "sensordata"].into_iter();
+        for ((what, found), expected) in named.zip(found).zip(self.sizes) {
+            if found != expected {
+                return Err(EngineError::Shape { what, found, expected });
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Returns the numbers of controls, positions, velocities and sensor values of a model.
+fn sizes(model: &Model) -> [usize; 4] {
+    [model.nu(), model.nq(), model.nv(), model.nsensordata()]
 }
 
 impl Env {

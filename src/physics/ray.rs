@@ -22,8 +22,8 @@ pub struct RayHit {
 ///
 /// Geoms are where the last [`step`](crate::Engine::step) or [`forward`](crate::Engine::forward) of the state has placed them. As in MuJoCo,
 /// invisible geoms are left out (those with an opacity of 0), planes are seen from above only, and a ray that starts inside a geom meets it
-/// where it leaves. `without_body` leaves out the geoms of one body, for example that of the sensor. Nothing is met along a direction of
-/// zeros, or with numbers that are not finite or beyond 1e10.
+/// where it leaves. `without_body` leaves out the geoms of one body, for example that of the sensor. The result is `None` if the
+/// direction is shorter than 1e-15, or if a number is not finite or beyond 1e10.
 ///
 /// ```
 /// use mjcf_sim::assets::MemoryAssets;
@@ -57,7 +57,7 @@ pub fn ray(
     length("params.geom_rbound", state.params.geom_rbound.len(), expected)?;
     // squares of greater numbers may overflow; NaN fails the comparison, too
     let usable = |v: Vec3| v.iter().all(|x| x.abs() <= MAXVAL);
-    if !usable(origin) || !usable(direction) || dot(direction, direction) < MINVAL {
+    if !usable(origin) || !usable(direction) || norm(direction) < MINVAL {
         return Ok(None);
     }
     Ok(nearest_geom(model, state, origin, direction, without_body))

@@ -65,7 +65,7 @@ fn a_second_policy_moves_the_second_infant() {
             "the learner rests: {rest:?} {moved:?}"
         );
         assert!(moved[1] < rest[1] - 0.2, "the other bends his arm: {rest:?} {moved:?}");
-        other.observe(env.state(), &mut seen);
+        other.observe(env.state(), &mut seen).expect("its own scene");
         assert_eq!(seen.len(), other.observation_len());
         assert!(seen.contains(&moved[1]));
         // the learner's controls are his own
@@ -165,6 +165,13 @@ fn what_cannot_be_is_said() {
     let env = two(&servos);
     let second = env.second_infant().expect("another one");
     assert_eq!(second.action_space().low(), env.action_space().low());
+    // an environment with another scene is refused, and stays as it is
+    let mut alone = env_alone(Behavior::SelfTouch);
+    let controls = alone.state().ctrl.clone();
+    let action = vec![0.0; second.action_space().len()];
+    assert!(second.act(&mut alone, &action).is_err());
+    assert!(second.observe(alone.state(), &mut Vec::new()).is_err());
+    assert_eq!(alone.state().ctrl, controls);
     for text in ["scene: crib\nlearner: other", "scene: crib\nother_age: 3"] {
         let error = Config::from_yaml(text, "c.yml").expect_err("refused").to_string();
         assert!(error.contains("c.yml:2:") && error.contains("second infant"), "{error}");
