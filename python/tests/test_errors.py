@@ -194,7 +194,7 @@ def test_vectors_that_are_not_allowed():
     with pytest.raises(ValueError, match="seeds"):
         envs.reset(seed=[1, 2, 3])
     envs.reset(seed=0)
-    with pytest.raises(IndexError, match="there is no environment 2"):
+    with pytest.raises(IndexError, match="environment 2 does not exist"):
         envs.send(np.zeros((1, 44)), [2])
     envs.send(np.zeros((1, 44)), [1])
     with pytest.raises(RuntimeError, match="environment 1 is in flight"):

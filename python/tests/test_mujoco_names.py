@@ -114,7 +114,7 @@ def test_a_model_comes_from_a_file_and_its_names_are_found(tmp_path: Path) -> No
             TypeError,
             r"jacp should be of shape \(3, nv\)",
         ),
-        (lambda m, d: mujoco.mj_jac(m, d, None, None, np.zeros(3), 9), ValueError, "there is no body 9"),
+        (lambda m, d: mujoco.mj_jac(m, d, None, None, np.zeros(3), 9), ValueError, "body 9 does not exist"),
         (lambda m, d: mujoco.mj_step2(m, d), RuntimeError, "call mj_step1 before it"),
         (lambda m, d: mujoco.mj_name2id(m, 99, "a"), ValueError, "99 is not a kind of element"),
         (lambda m, d: mujoco.mj_stateSize(m, 1 << 20), ValueError, "not a sum of parts"),

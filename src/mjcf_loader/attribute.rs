@@ -40,9 +40,9 @@ pub(super) enum Kind {
     User,
     /// The length of such data; -1 for that of the longest.
     UserCount,
-    /// Numbers whose count the compiler checks, at most as many as a whole state has.
+    /// Numbers of a keyframe for a state. The compiler checks their count.
     State,
-    /// Numbers whose count the compiler checks, at most as many as all bodies have.
+    /// Numbers of a keyframe for the poses of mocap bodies. The compiler checks their count.
     Poses,
     /// Numbers of a mesh, as many as the limits allow.
     Data,

@@ -10,7 +10,7 @@ use crate::model::Model;
 use crate::soft::{SoftEngine, SoftModel, SoftOptions};
 use crate::state::State;
 
-/// An error of a state of a batch. The state is as the failed step has left it. All others were stepped.
+/// An error in stepping one state of a batch. That state is as its failed step left it. All other states were stepped.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[error("state {index} of the batch: {source}")]
 pub struct BatchError {
@@ -22,9 +22,8 @@ pub struct BatchError {
 
 /// Many states of one model that are stepped together, for searches and controllers (MPPI, the cross-entropy method, tree search).
 ///
-/// One engine steps all of them, and stays in the cache of its core. `mjcf_sim::rollout_on` steps them on threads, each with an engine
-/// of its own.
-/// Each state gets the bits that it would get alone, whatever the number of states and of threads. After a first [`Batch::rollout`]
+/// One engine steps all of them, and stays in the cache of its core. `mjcf_sim::rollout_on` steps them on threads, each with its own
+/// engine. Each state gets the bits that it would get alone, whatever the number of states and of threads. After a first [`Batch::rollout`]
 /// nothing is allocated.
 ///
 /// ```
@@ -111,8 +110,8 @@ impl Batch {
             .map_or(Ok(()), |mut all| all.rollout(steps, control))
     }
 
-    /// Splits the batch into at most `parts` runs of neighbours, of nearly one size, each with an engine, for threads of the caller's. A batch
-    /// without states has no parts. `mjcf_sim::rollout_on` starts threads itself.
+    /// Splits the batch into at most `parts` runs of consecutive states, nearly equal in length, each with its own engine, for the caller's
+    /// threads. A batch without states has no parts. `mjcf_sim::rollout_on` starts threads itself.
     pub fn split(&mut self, parts: usize) -> impl Iterator<Item = BatchPart<'_>> {
         let parts = parts.clamp(1, self.states.len().max(1));
         let missing = parts.saturating_sub(self.engines.len());

@@ -27,7 +27,7 @@ pub enum EngineError {
         value: f64,
     },
     /// A force is applied to a body that does not exist.
-    #[error("there is no body {body}; the model has {count}, numbered from 0")]
+    #[error("body {body} does not exist: the model has {count} bodies, numbered from 0")]
     NoBody {
         /// Body asked for, by id.
         body: usize,
@@ -35,7 +35,7 @@ pub enum EngineError {
         count: usize,
     },
     /// A keyframe that does not exist is asked for.
-    #[error("there is no keyframe {key}; the model has {count}, numbered from 0")]
+    #[error("keyframe {key} does not exist: the model has {count}, numbered from 0")]
     NoKeyframe {
         /// Keyframe asked for.
         key: usize,

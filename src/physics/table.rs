@@ -101,7 +101,7 @@ impl Row for Vec<bool> {
     }
 }
 
-/// A count is neither: whoever keeps it writes it down as a whole number.
+/// Counters are not part of the snapshot's numbers or flags.
 impl Row for u64 {}
 
 /// Checks the length of a vector.

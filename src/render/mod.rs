@@ -101,7 +101,7 @@ pub enum RenderError {
         message: String,
     },
     /// The model has no such camera.
-    #[error("there is no camera {camera}; the model has {count}")]
+    #[error("camera {camera} does not exist: the model has {count}, numbered from 0")]
     Camera {
         /// Camera asked for, by id.
         camera: usize,

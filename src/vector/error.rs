@@ -71,7 +71,7 @@ pub enum VectorError {
         what: &'static str,
     },
     /// The environment does not exist.
-    #[error("there is no environment {env}: the vector has {envs}, counted from 0")]
+    #[error("environment {env} does not exist: the vector has {envs}, numbered from 0")]
     Unknown {
         /// The requested number.
         env: usize,

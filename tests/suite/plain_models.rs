@@ -123,7 +123,7 @@ fn keyframes_set_the_whole_state() {
     let error = engine.reset_to_keyframe(&mut state, 3).expect_err("only three");
     assert_eq!(
         error.to_string(),
-        "there is no keyframe 3; the model has 3, numbered from 0"
+        "keyframe 3 does not exist: the model has 3, numbered from 0"
     );
 }
 

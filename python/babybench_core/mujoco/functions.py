@@ -230,7 +230,7 @@ def mj_resetDataKeyframe(m: MjModel, d: MjData, key: int) -> None:
     check(m, d)
     _anew(d)
     if key < 0:
-        raise IndexError(f"there is no keyframe {key}; the model has {m.nkey}, numbered from 0")
+        raise IndexError(f"keyframe {key} does not exist: the model has {m.nkey}, numbered from 0")
     d._own.reset(int(key))
     d.userdata[:] = 0
 

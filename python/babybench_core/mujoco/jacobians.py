@@ -31,7 +31,7 @@ def chain(m: MjModel, body: int) -> NDArray[np.intp]:
     known: dict[int, NDArray[np.intp]] = m._chains
     if body not in known:
         if not 0 <= body < m.nbody:
-            raise ValueError(f"there is no body {body}; the model has {m.nbody}, numbered from 0")
+            raise ValueError(f"body {body} does not exist: the model has {m.nbody} bodies, numbered from 0")
         found: list[int] = []
         at = body
         while at > 0:

@@ -32,7 +32,7 @@ pub(super) fn compile_actuators(
         let (trntype, trnid, refid) = transmission(context, actuator, ids)?;
         let range = match trntype {
             TrnType::Tendon => Some(arrays.tendon_range[trnid]),
-            // the range of a ball joint is that of an angle, which is no coordinate that a servo could track
+            // the range of a ball joint limits an angle, and a servo tracks coordinates
             TrnType::Joint | TrnType::JointInParent if arrays.jnt_type[trnid].nv() > 1 => None,
             TrnType::Joint | TrnType::JointInParent => Some(arrays.jnt_range[trnid]),
             TrnType::SliderCrank | TrnType::Site | TrnType::Body => None,
@@ -105,7 +105,7 @@ fn transmission(
         let crank = find_site("cranksite", name)?;
         Ok((TrnType::SliderCrank, crank, Some(find_site("slidersite", slider)?)))
     } else if let Some(name) = &actuator.at_site.site {
-        // an empty name is no reference, as in MuJoCo
+        // MuJoCo ignores an empty name
         let reference = actuator.at_site.refsite.as_ref().filter(|name| !name.is_empty());
         let reference = reference.map(|name| find_site("refsite", name)).transpose()?;
         Ok((TrnType::Site, find_site("site", name)?, reference))
