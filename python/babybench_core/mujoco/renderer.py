@@ -65,7 +65,9 @@ def draw(
             raise ValueError(f"camera id {fixed} is out of range [-1, {data.model.ncam}]")
     elif camera.type == mjtCamera.mjCAMERA_TRACKING:
         if not 0 <= camera.trackbodyid < data.model.nbody:
-            raise ValueError(f"the camera cannot follow body {camera.trackbodyid}: the model has {data.model.nbody} bodies, numbered from 0")
+            raise ValueError(
+                f"the camera cannot follow body {camera.trackbodyid}: the model has {data.model.nbody} bodies, numbered from 0"
+            )
         lookat = data.subtree_com[camera.trackbodyid]
     elif camera.type != mjtCamera.mjCAMERA_FREE:
         raise ValueError(
