@@ -18,10 +18,13 @@ from __future__ import annotations
 
 from typing import NoReturn
 
+from babybench_core.mujoco import constants as _constants
 from babybench_core.mujoco import enums as _enums
 from babybench_core.mujoco import functions as _functions
 from babybench_core.mujoco import jacobians as _jacobians
 from babybench_core.mujoco import maths as _maths
+from babybench_core.mujoco import more_enums as _more_enums
+from babybench_core.mujoco.constants import *  # noqa: F403
 from babybench_core.mujoco.data import MjData
 from babybench_core.mujoco.enums import *  # noqa: F403
 from babybench_core.mujoco.functions import *  # noqa: F403
@@ -29,6 +32,7 @@ from babybench_core.mujoco.installing import install, uninstall
 from babybench_core.mujoco.jacobians import *  # noqa: F403
 from babybench_core.mujoco.maths import *  # noqa: F403
 from babybench_core.mujoco.model import MjModel, MjOption
+from babybench_core.mujoco.more_enums import *  # noqa: F403
 from babybench_core.mujoco.renderer import MjvCamera, Renderer, mjv_defaultCamera, mjv_defaultFreeCamera
 
 stands_in = True
@@ -64,7 +68,9 @@ __all__ = [
     "stands_in",
     "uninstall",
 ]
-__all__ += _enums.__all__ + _functions.__all__ + _jacobians.__all__ + _maths.__all__
+__all__ += (
+    _constants.__all__ + _enums.__all__ + _more_enums.__all__ + _functions.__all__ + _jacobians.__all__ + _maths.__all__
+)
 
 
 def __getattr__(name: str) -> NoReturn:

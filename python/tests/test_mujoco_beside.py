@@ -312,13 +312,26 @@ def test_quaternions_are_mujoco_s() -> None:
 
 
 def test_numbers_of_enumerations_are_mujoco_s() -> None:
-    from babybench_core.mujoco import enums
+    from babybench_core.mujoco import enums, more_enums
 
-    for name in enums.__all__:
-        own = {member: int(value) for member, value in getattr(enums, name).__members__.items()}
+    assert sorted([*enums.__all__, *more_enums.__all__]) == [name for name in dir(theirs) if name.startswith("mjt")]
+    for name in [*enums.__all__, *more_enums.__all__]:
+        own = {member: int(value) for member, value in getattr(ours, name).__members__.items()}
         assert own == {member: int(value) for member, value in getattr(theirs, name).__members__.items()}
 
 
 def test_beside_mujoco_itself_installing_is_refused() -> None:
     with pytest.raises(RuntimeError, match="MuJoCo itself was imported already"):
         ours.install()
+
+
+@pytest.mark.parametrize("name", ["arm", "half_cheetah", "walker2d"])
+def test_constants_are_mujoco_s(name: str) -> None:
+    models = [library.MjModel.from_xml_string(DOCUMENTS[name]) for library in (ours, theirs)]
+    states = [library.MjData(model) for library, model in zip((ours, theirs), models)]
+    for library, model, data in zip((ours, theirs), models, states):
+        model.body_mass[1:] *= 1.5
+        library.mj_setConst(model, data)
+    for array in ("body_invweight0", "dof_invweight0", "dof_M0", "body_subtreemass"):
+        assert np.allclose(getattr(models[0], array), getattr(models[1], array), rtol=1e-9), array
+    assert np.allclose(states[0].qpos, states[1].qpos)

@@ -107,8 +107,8 @@ def test_a_model_comes_from_a_file_and_its_names_are_found(tmp_path: Path) -> No
         ),
         (lambda m, d: mujoco.mj_step("m", d), TypeError, "builtins.str"),
         (lambda m, d: mujoco.mj_step(pair()[0], d), ValueError, "belongs to another model"),
-        (lambda m, d: mujoco.mj_resetDataKeyframe(m, d, 1), IndexError, "no keyframe 1; the model has 1"),
-        (lambda m, d: mujoco.mj_resetDataKeyframe(m, d, -1), IndexError, "no keyframe -1"),
+        (lambda m, d: mujoco.mj_resetDataKeyframe(m, d, 1), IndexError, "keyframe 1 does not exist: the model has 1"),
+        (lambda m, d: mujoco.mj_resetDataKeyframe(m, d, -1), IndexError, "keyframe -1 does not exist"),
         (
             lambda m, d: mujoco.mj_jac(m, d, np.zeros((3, 2)), None, np.zeros(3), 1),
             TypeError,
@@ -491,3 +491,60 @@ def test_gymnasium_s_renderer_says_what_it_has_not() -> None:
         gymnasium_rendering.WindowViewer  # noqa: B018
     with pytest.raises(AttributeError, match="without OpenGL"):
         renderer.viewer.add_marker()
+
+
+BALL = """<mujoco><worldbody>
+  <body name='ball' pos='.24 -.04 .8'><freejoint/><geom name='b' size='.025' mass='.5'/></body>
+  <body name='arm'><joint name='e' axis='0 1 0' stiffness='.13' springref='-20' armature='.01'/>
+    <geom type='capsule' fromto='0 0 0 0 0 .1' size='.02'/>
+    <body pos='0 0 .1'><joint type='ball'/><geom size='.03'/></body></body>
+  </worldbody></mujoco>"""
+
+
+def test_constants_follow_masses() -> None:
+    model, data = pair(BALL)
+    ball, before = (
+        model.body("ball").id,
+        (model.body_invweight0.copy(), model.dof_invweight0.copy(), model.dof_M0.copy()),
+    )
+    mujoco.mj_setConst(model, data)
+    for name, known in zip(("body_invweight0", "dof_invweight0", "dof_M0"), before):
+        assert np.allclose(getattr(model, name), known, rtol=1e-9), f"{name} of the compiler"
+    model.body_mass[ball], model.body_inertia[ball] = 0.1, 2 * 0.1 * 0.01**2 / 5
+    assert np.allclose(model.body_invweight0, before[0], rtol=1e-9), "nothing follows by itself"
+    data.qpos[:3] += 0.01
+    mujoco.mj_setConst(model, data)
+    assert np.allclose(model.body_invweight0[ball], [10, 250000])
+    assert np.allclose(model.dof_M0[:6], [0.1] * 3 + [4e-6] * 3)
+    assert model.body_subtreemass[0] == pytest.approx(model.body_mass.sum())
+    assert np.allclose(data.qpos, model.qpos_spring), "the positions of the springs"
+
+
+def test_constants_of_tendons_are_not_computed() -> None:
+    model, data = pair(
+        BALL.replace("</worldbody>", "</worldbody><tendon><fixed><joint joint='e' coef='1'/></fixed></tendon>")
+    )
+    model.body_mass[model.body("ball").id] = 0.1
+    mujoco.mj_setConst(model, data)
+    model.body_mass[model.body("arm").id] *= 2
+    with pytest.raises(NotImplementedError, match="1 tendons"):
+        mujoco.mj_setConst(model, data)
+
+
+def test_contacts_are_found_by_themselves() -> None:
+    model, data = pair(
+        "<mujoco><worldbody><geom type='plane' size='1 1 1'/><body><freejoint/><geom size='.1'/></body></worldbody></mujoco>"
+    )
+    data.qpos[2] = 0.09
+    mujoco.mj_collision(model, data)
+    assert data.ncon == 1
+    assert data.contact[0].dist == pytest.approx(-0.01)
+    data.qpos[2] = 0.2
+    mujoco.mj_collision(model, data)
+    assert data.ncon == 0
+
+
+def test_enumerations_of_documents_and_windows_are_there() -> None:
+    assert int(mujoco.mjtLimited.mjLIMITED_AUTO) == 2
+    assert int(mujoco.mjtBuiltin.mjBUILTIN_FLAT) == 3
+    assert int(mujoco.mjtTextureRole.mjTEXROLE_RGB) == 1
