@@ -135,6 +135,22 @@ class Blueprint:
     ) -> Blueprint:
         """Compiles a scene. A ``str`` is the path of a YAML file; ``assets`` is a folder laid out like the kit's."""
 
+    @staticmethod
+    def by_hand(
+        config: Mapping[str, object] | str | os.PathLike[str],
+        document: str | None = None,
+        version: str = "v1",
+        folder: str | os.PathLike[str] = "",
+        files: Mapping[str, bytes] = ...,
+        touch_spacing: Sequence[tuple[str, float]] = (),
+        assets: str | os.PathLike[str] | None = None,
+    ) -> Blueprint:
+        """Compiles a document, or without one the configuration's, for a program that puts resets and steps together.
+
+        ``folder`` is the document's, and absolute; ``files`` replace some of its files; ``touch_spacing`` are bodies and the
+        distances between their touch sensors, m.
+        """
+
     @property
     def config(self) -> dict[str, Any]:
         """All keys with their values."""

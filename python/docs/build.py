@@ -36,6 +36,12 @@ MODULES = (
     "babybench_kit.senses",
     "babybench_kit.sensing",
     "babybench_kit.touch",
+    "babybench_kit.tasks.catch",
+    "babybench_kit.tasks.dummy",
+    "babybench_kit.tasks.muscle_test",
+    "babybench_kit.tasks.reach",
+    "babybench_kit.tasks.selfbody",
+    "babybench_kit.tasks.standup",
     "babybench_kit.utils",
     "babybench_kit.views",
     "babybench_core.mujoco.data",
@@ -43,6 +49,7 @@ MODULES = (
 )
 LINKS = {
     "(docs/from-the-kit.md)": "(#from-the-starter-kit-to-here)",
+    "(from-mimo.md)": "(#from-mimo-to-here)",
     "(docs/mujoco.md)": "(#mujocos-names-without-mujoco)",
     "(../README.md)": "(#babybench-for-python)",
 }
@@ -50,7 +57,9 @@ LINKS = {
 
 def guide() -> str:
     """Returns the README and the guides beside this file as one page of HTML."""
-    text = "\n\n".join((HERE / name).read_text("utf-8") for name in ("../README.md", "mujoco.md", "from-the-kit.md"))
+    text = "\n\n".join(
+        (HERE / name).read_text("utf-8") for name in ("../README.md", "mujoco.md", "from-the-kit.md", "from-mimo.md")
+    )
     for link, here in LINKS.items():
         text = text.replace(link, here)
     return str(pdoc.render_helpers.to_html(text))

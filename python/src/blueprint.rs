@@ -1,16 +1,53 @@
 //! Compiled scenes.
 
+use std::collections::HashMap;
 use std::path::PathBuf;
 
-use babybench::assets::DirAssets;
-use babybench::env::BlueprintOptions;
+use babybench::assets::{DirAssets, directory};
+use babybench::env::{BlueprintOptions, EnvError, Info, Task, TaskDocument, TaskEvent, TaskScene};
+use babybench::mimo::{DOCUMENT, Version};
 use numpy::PyArray1;
+use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use crate::config::{config_of, to_dict};
 use crate::errors::{IntoException, detached};
+use crate::given_files::BesideDocument;
 use crate::model;
+
+/// The task of an environment that a program steps by hand: a document and a skin, without goals.
+#[derive(Clone, Debug)]
+struct ByHand {
+    /// The document and the version of MIMo in it; `None` for the one that the configuration asks for.
+    document: Option<(String, Version)>,
+    touch_spacing: Vec<(String, f64)>,
+}
+
+impl Task for ByHand {
+    fn name(&self) -> &str {
+        "none"
+    }
+
+    fn document(&self, config: &babybench::Config) -> TaskDocument {
+        let own = TaskDocument::of(config);
+        let (xml, version) = self.document.clone().unwrap_or((own.xml, own.version));
+        TaskDocument {
+            xml,
+            version,
+            touch_spacing: self.touch_spacing.clone(),
+        }
+    }
+
+    /// Nothing moves before the program's first step.
+    fn settle(&self, _scene: &mut TaskScene<'_>) -> Result<(), EnvError> {
+        Ok(())
+    }
+
+    fn inform(&self, _event: TaskEvent<'_>, info: &mut Info) {
+        info.behavior = babybench::env::BehaviorInfo::None;
+    }
+}
 
 /// A compiled scene with its configuration, which environments share.
 #[pyclass(frozen, weakref, module = "babybench_core._native")]
@@ -30,6 +67,44 @@ impl Blueprint {
             Some(assets) => babybench::Blueprint::with(config, BlueprintOptions::default().with_assets(assets)),
             None => babybench::Blueprint::new(config),
         })?;
+        Ok(Self { inner })
+    }
+
+    /// Compiles a document, or without one the configuration's, for a program that puts resets and steps together.
+    #[staticmethod]
+    #[pyo3(signature = (config, document=None, version="v1", folder=PathBuf::new(), files=HashMap::new(), touch_spacing=Vec::new(), assets=None))]
+    #[allow(clippy::too_many_arguments)] // keywords in Python
+    fn by_hand(
+        py: Python<'_>,
+        config: &Bound<'_, PyAny>,
+        document: Option<String>,
+        version: &str,
+        folder: PathBuf,
+        files: HashMap<String, Vec<u8>>,
+        touch_spacing: Vec<(String, f64)>,
+        assets: Option<PathBuf>,
+    ) -> PyResult<Self> {
+        let config = config_of(py, config)?;
+        let version = match version {
+            "v1" => Version::V1,
+            "v2" => Version::V2,
+            other => {
+                return Err(PyValueError::new_err(format!(
+                    "version is {other:?}, expected \"v1\" or \"v2\""
+                )));
+            }
+        };
+        let mut options = BlueprintOptions::default();
+        if document.is_some() {
+            options = options.with_assets(BesideDocument::new(files, folder, directory(DOCUMENT))?);
+        } else if let Some(assets) = assets {
+            options = options.with_assets(DirAssets::new(assets).map_err(IntoException::into_exception)?);
+        }
+        let task = ByHand {
+            document: document.map(|xml| (xml, version)),
+            touch_spacing,
+        };
+        let inner = detached(py, || babybench::Blueprint::with(config, options.with_task(task)))?;
         Ok(Self { inner })
     }
 

@@ -54,3 +54,45 @@ impl AssetSource for GivenFiles {
         self.beside.resolve(dir, file)
     }
 }
+
+/// The files beside a document that lies in a folder of the file system, but is read under another path.
+pub struct BesideDocument {
+    files: GivenFiles,
+    /// The folder that the document is read in.
+    read_in: String,
+    folder: PathBuf,
+}
+
+impl BesideDocument {
+    /// Lays contents over the folder of a document, which must be absolute.
+    pub fn new(files: HashMap<String, Vec<u8>>, folder: PathBuf, read_in: &str) -> PyResult<Self> {
+        if !folder.is_absolute() {
+            let what = format!("folder is {folder:?}: the folder of a document must be absolute");
+            return Err(PyValueError::new_err(what));
+        }
+        Ok(Self {
+            files: GivenFiles::new(files, folder.clone())?,
+            read_in: read_in.to_owned(),
+            folder,
+        })
+    }
+}
+
+impl AssetSource for BesideDocument {
+    fn read(&self, path: &str) -> Result<Cow<'_, [u8]>, AssetError> {
+        self.files.read(path)
+    }
+
+    fn contains(&self, path: &str) -> bool {
+        self.files.contains(path)
+    }
+
+    /// All results are absolute, so only the document itself refers to files from `read_in`.
+    fn resolve(&self, dir: &str, file: &str) -> Result<String, AssetError> {
+        if dir == self.read_in {
+            self.files.resolve(&self.folder.to_string_lossy(), file)
+        } else {
+            self.files.resolve(dir, file)
+        }
+    }
+}

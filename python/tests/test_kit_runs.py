@@ -12,7 +12,7 @@ import gymnasium as gym
 import numpy as np
 import pytest
 from kit_scripts import CONFIG, Make, steps
-from mimoEnv.babybench import BabyBenchEnv
+from mimoEnv.babybench import BabyBenchEnv, BabyBenchSelfTouchEnv
 
 from babybench.build_xml import build
 from babybench.eval import EVALS
@@ -92,7 +92,7 @@ def test_a_scene_is_taken_as_it_is(make: Make, tmp_path: Path) -> None:
     assert evaluated.action_space.shape == make(act_legs=False).action_space.shape
     scene = tmp_path / "run" / "scene.xml"
     scene.write_text(scene.read_text().replace("<worldbody>", "<worldbody><geom size='1'/>"))
-    with pytest.raises(ValueError, match=r"it has <geom>; this engine serves the scenes that"):
+    with pytest.raises(ValueError, match=r"it has <geom>; BabyBench's own environments take the scenes that"):
         make(training=False)
 
 
@@ -104,17 +104,24 @@ def test_build_names_what_is_missing() -> None:
     assert "motor_eyes" not in text
 
 
-def test_parameters_that_the_engine_does_not_have_are_refused() -> None:
-    with pytest.raises(ValueError, match="touch_scale"):
-        BabyBenchEnv(
-            touch_params={
-                "scales": {"head": 0.1, "hip": 0.1, "lower_body": 0.1, "upper_body": 0.1},
-                "touch_function": "force_vector",
-                "response_function": "nearest",
-            }
-        )
-    with pytest.raises(ValueError, match="eye_left and eye_right"):
-        BabyBenchEnv(vision_params={"eye_left": {"width": 64, "height": 32}, "corner": {"width": 64, "height": 32}})
+TRUNK = {"head": 0.1, "hip": 0.1, "lower_body": 0.1, "upper_body": 0.1}
+
+
+def test_touch_parameters_that_a_behavior_does_not_have_are_refused() -> None:
+    own = {"scales": TRUNK, "touch_function": "force_vector", "response_function": "nearest"}
+    with pytest.raises(ValueError, match=r"touch_scale.*MIMoEnv for others"):
+        BabyBenchSelfTouchEnv(touch_params=own)
+    env, usual = BabyBenchEnv(touch_params=own), BabyBenchEnv(touch_params=None)
+    felt = env.reset()[0]["touch"]
+    assert felt.shape == (3 * env.touch.get_total_sensor_count(),)
+    assert np.allclose(env.init_qpos, usual.init_qpos, atol=1e-9), "both settle"
+
+
+def test_other_cameras_are_drawn() -> None:
+    seen = BabyBenchEnv(
+        vision_params={"eye_left": {"width": 48, "height": 16}, "corner": {"width": 32, "height": 24}}
+    ).reset()[0]
+    assert (seen["eye_left"].shape, seen["corner"].shape) == ((16, 48, 3), (24, 32, 3))
 
 
 def test_each_eye_has_its_own_width_and_height() -> None:

@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from babybench_core import _native
 
+from .muscle_parts import MuscleParts
 from .replaceable import Replaceable
 from .utils import JOINT_EQUALITY
 
@@ -231,7 +232,7 @@ class PositionalModel(EngineActuation):
         return 0
 
 
-class MuscleModel(EngineActuation):
+class MuscleModel(MuscleParts, EngineActuation):
     """Two opposing muscles for each actuator: an action is their excitations, 0 to 1, first those that pull to the negative side.
 
     Attributes:
@@ -299,16 +300,6 @@ class MuscleModel(EngineActuation):
         self._made()
 
     @property
-    def activity(self) -> Array:
-        """Returns the activations of the muscles, (2 n,), 0 to 1."""
-        return np.asarray(self._core.engine.state_array("act"))
-
-    @property
-    def target_activity(self) -> Array:
-        """Returns the excitations that the activations follow, (2 n,)."""
-        return np.asarray(self._core.engine.state_array("actuator_target"))
-
-    @property
     def joint_torque(self) -> Array:
         """Returns the torques of the muscles on the joints, (n,), N m."""
         return np.asarray(self._core.engine.state_array("muscle_torque"))
@@ -321,22 +312,6 @@ class MuscleModel(EngineActuation):
     def muscle_activations(self) -> Array:
         """Returns the activations of the muscles, (2 n,), 0 to 1."""
         return self.activity
-
-    @property
-    def muscle_lengths(self) -> Array:
-        """Returns the lengths of the muscles, (2 n,), relative to their optimum."""
-        angles = self._core.engine.state_array("qpos")[self.mimo_actuated_qpos] - self._spring
-        return np.asarray(np.tile(angles, 2) * self._moments + self._offsets)
-
-    @property
-    def muscle_velocities(self) -> Array:
-        """Returns the velocities of the muscles, (2 n,), optimal lengths per s."""
-        return np.asarray(np.tile(self._core.engine.state_array("qvel")[self.mimo_actuated_qvel], 2) * self._moments)
-
-    @property
-    def muscle_forces(self) -> NDArray[np.float32]:
-        """Returns the forces of the muscles, (2 n,), relative to ``fmax``."""
-        return np.asarray(self._core.engine.state_array("muscle_force").astype(np.float32))
 
     def simulation_torque(self) -> Array:
         """Returns the torque on each joint, (n,), N m."""

@@ -18,6 +18,7 @@ class Beneath(Protocol):
 
     config: dict[str, Any]
     assets: Path | None
+    document: Path | None
     blueprint: _native.Blueprint
     engine: _native.Env
     parts: _native.Parts

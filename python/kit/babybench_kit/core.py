@@ -16,7 +16,7 @@ from .live import Live, ViewLive
 from .models import Watched, make_model, mujoco_module
 from .mujoco_live import MujocoLive
 from .scene import Scene
-from .settings import blueprint
+from .settings import Settings, blueprint
 from .views import ModelView
 
 Array = NDArray[np.float64]
@@ -45,6 +45,8 @@ class Core:
     Attributes:
         config: The complete configuration of the engine.
         assets: The folder of MJCF files and textures; nothing for the embedded ones.
+        document: The document, if it is compiled as it stands.
+        settled: Whether the engine has let the scene come to rest.
         engine: The environment in Rust; ``parts`` are the parts of its reset and step.
         names: Names of all elements, by kind.
         course: What is known of the present instant, and who may write to it.
@@ -54,10 +56,12 @@ class Core:
         width, height: Size of pictures for people, pixels.
     """
 
-    def __init__(self, config: dict[str, Any], scene: Scene, width: int, height: int) -> None:
+    def __init__(self, settings: Settings, scene: Scene, width: int, height: int) -> None:
         """Compiles a scene, or takes a compiled one."""
-        self.config, self.assets, self.width, self.height = config, scene.assets, width, height
-        self.blueprint = blueprint(config, scene.assets)
+        self.config, self.assets, self.width, self.height = settings.config, scene.assets, width, height
+        self.document = scene.document
+        self.settled = scene.document is None and settings.spacing is None
+        self.blueprint = blueprint(settings, scene)
         self.engine = _native.Env(self.blueprint)
         self.parts = _native.Parts(self.engine)
         self.names: dict[str, list[str]] = {kind: list(names) for kind, names in self.blueprint.model_names.items()}
@@ -160,6 +164,25 @@ class Core:
         self.parts.physics_step()
         self.changed()
 
+    def read(self, name: str) -> Array:
+        """Returns an array of the present state."""
+        self.pull()
+        return self.engine.state_array(name)
+
+    def move(self, qpos: Any) -> None:
+        """Puts the scene at other positions, from which nothing is computed yet; velocities stay."""
+        self.parts.set_position(qpos, self.engine.state_array("qvel"))
+        self.written()
+        if self._live is not None:
+            self._live.advance()
+
+    def change_model(self, changes: dict[str, Any]) -> None:
+        """Changes numbers of the model, which scripts then see."""
+        self.pull()
+        self.engine.change_model(changes)
+        if self._watched is not None:
+            self._watched.show(changes)
+
     # --- senses ---
 
     def observe(self) -> None:
@@ -205,6 +228,12 @@ class Core:
         if self._poses is None:
             self._poses = Poses(self.engine)
         return self._poses
+
+    @property
+    def present(self) -> Poses:
+        """Returns the poses of the present state, with what a script has written and computed."""
+        self.pull()
+        return self.poses
 
     # --- what scripts hold ---
 

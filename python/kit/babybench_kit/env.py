@@ -60,6 +60,8 @@ class BabyBenchEnv(MIMoEnv):
         steps: Number of steps in this episode.
     """
 
+    _any_scene = False
+
     def __init__(
         self,
         model_path: str | os.PathLike[str] = SCENE_NAME,
@@ -116,7 +118,7 @@ class BabyBenchEnv(MIMoEnv):
         """Lets the scene come to rest; episodes start there."""
         core = self._core
         own = replaced(self, _ORIGINAL, ("set_state", "_set_action", "_single_mujoco_step"))
-        if core.place is None and isinstance(self.actuation_model, EngineActuation) and not own:
+        if core.settled and core.place is None and isinstance(self.actuation_model, EngineActuation) and not own:
             # the engine has done that
             self.init_qpos, self.init_qvel = core.blueprint.init_qpos, core.blueprint.init_qvel
             core.forward(self.init_qpos, self.init_qvel)

@@ -9,7 +9,7 @@ from __future__ import annotations
 import os
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
+from typing import Any, NoReturn
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -18,13 +18,14 @@ from babybench_core import _native
 
 from . import tables
 from .actuation import MODELS, ActuationModel, SpringDamperModel
+from .assets import assets_folder, assets_path
 from .core import Core
 from .course import Share
 from .renderer import MujocoRenderer
 from .replaceable import refuse_uncalled, replaced
-from .scene import Scene, read_scene
+from .scene import Scene, read_any_scene, read_scene
 from .sensing import Observation, SensingEnv
-from .settings import engine_config
+from .settings import engine_settings
 
 Array = NDArray[np.float64]
 
@@ -60,10 +61,12 @@ _DEFAULT_SCENE = Scene(
 """Description of :data:`SCENE_NAME`."""
 
 
-def _known_scene(model_path: str | os.PathLike[str]) -> Scene:
+def _known_scene(model_path: str | os.PathLike[str], any_scene: bool) -> Scene:
     path = Path(model_path)
+    if not path.is_file() and path.parent == assets_path():
+        assets_folder()  # on first use
     if path.is_file():
-        return read_scene(path)
+        return read_any_scene(path) if any_scene else read_scene(path)
     if path.name == SCENE_NAME:
         return _DEFAULT_SCENE
     raise FileNotFoundError(f"File {path} does not exist")
@@ -73,18 +76,21 @@ class MIMoEnv(SensingEnv):
     """MIMo in a scene, with the senses and the actuation that the arguments ask for.
 
     Args:
-        model_path: The scene, as ``babybench.build_xml.build`` writes it.
+        model_path: The scene: any MJCF document with MIMo.
         initial_qpos: Joint angles at the start by the joints' names, rad.
         frame_skip: Physics steps of 5 ms for each step.
         render_mode: ``rgb_array`` or ``depth_array``, for :meth:`render`.
         camera_id: The camera of :meth:`render`, by id.
         camera_name: The camera of :meth:`render`, by name.
         width, height: Size of pictures for people, pixels.
-        default_camera_config: Not used.
+        default_camera_config: The free camera of :meth:`render` in scenes without a camera for the room: ``lookat``,
+            ``distance``, ``azimuth``, ``elevation``.
         proprio_params, touch_params, vision_params, vestibular_params: Parameters of the senses; ``None`` turns one off.
         actuation_model: The class of the actuation model.
         goals_in_observation: Whether ``achieved_goal`` and ``desired_goal`` are part of the observation.
         done_active: Whether success and failure end an episode.
+        config: A configuration of BabyBench, whose keys hold where no argument says otherwise.
+        age: MIMo's age, months; ``None`` for the proportions of the scene.
 
     Attributes:
         model, data: MuJoCo's ``MjModel`` and ``MjData`` of the present state where MuJoCo is installed, or what stands for them.
@@ -97,7 +103,11 @@ class MIMoEnv(SensingEnv):
 
     metadata: dict[str, Any] = {"render_modes": ["human", "rgb_array", "depth_array"], "render_fps": 200}  # noqa: RUF012
     _engine_behavior = "none"
+    _any_scene = True
+    """Whether it takes scenes that BabyBench's ``build_xml`` did not write."""
     _forwards_attributes = True
+    init_qpos: Array
+    init_qvel: Array
     _ezpickle_args: tuple[Any, ...]
     _ezpickle_kwargs: dict[str, Any]
 
@@ -132,8 +142,10 @@ class MIMoEnv(SensingEnv):
         done_active: bool = False,
         *,
         config: Mapping[str, Any] | None = None,
+        age: float | None = None,
     ) -> None:
-        """Compiles the scene and settles nothing yet: MIMo is where the scene puts it."""
+        """Compiles the scene, and takes one physics step if it is none of BabyBench's."""
+        self._age = age
         self.frame_skip = frame_skip
         self.proprio_params, self.touch_params = proprio_params, touch_params
         self.vision_params, self.vestibular_params = vision_params, vestibular_params
@@ -155,6 +167,9 @@ class MIMoEnv(SensingEnv):
         self.proprioception = self.touch = self.vision = self.vestibular = None
         self._core.reset_data()
         self._core.forward(self.init_qpos, self.init_qvel)
+        if self._core.document is not None:
+            self._single_mujoco_step()
+            self._set_initial_position(self._initial_qpos)
         self._env_setup()
         self.goal = self.sample_goal()
         self._share = self._share_of_the_script()
@@ -170,16 +185,18 @@ class MIMoEnv(SensingEnv):
 
     def _initialize_simulation(self) -> None:
         """Compiles the scene, and makes the actuation model."""
-        self._core = self._compile(_known_scene(self.fullpath), self._actuation, self._config)
+        self._core = self._compile(_known_scene(self.fullpath, self._any_scene), self._actuation, self._config)
         self._name_parts()
+        self._core.move(self.init_qpos)
         self._set_initial_position(self._initial_qpos)
+        self.init_qpos = self._core.read("qpos")
         self.actuation_model: ActuationModel = self._actuation(self, self.mimo_actuators)
         self._core.plain_actuation = self._actuation in MODELS.values()
 
     def _compile(self, scene: Scene, actuation_model: type[ActuationModel], config: Mapping[str, Any]) -> Core:
         """Compiles a scene for the senses and the actuation that the arguments ask for."""
         names = (name for cls in actuation_model.__mro__ if (name := getattr(cls, "_engine_name", "")))
-        settings = engine_config(
+        settings = engine_settings(
             config,
             scene,
             behavior=self._engine_behavior,
@@ -189,6 +206,7 @@ class MIMoEnv(SensingEnv):
             vision=self.vision_params,
             balance=self.vestibular_params,
             actuation=next(names, "spring_damper"),
+            age=self._age,
         )
         return Core(settings, scene, self.width, self.height)
 
@@ -199,8 +217,8 @@ class MIMoEnv(SensingEnv):
         self._get_joints()
         self._get_actuators()
         self._get_facial_expressions(EMOTES)
-        self.init_qpos: Array = np.array(core.blueprint.model_array("qpos0"))
-        self.init_qvel: Array = np.zeros(core.blueprint.model_options["nv"])
+        self.init_qpos = np.array(core.blueprint.model_array("qpos0"))
+        self.init_qvel = np.zeros(core.blueprint.model_options["nv"])
         if core.place is not None:
             self.init_qpos[:3] = core.place
 
@@ -211,10 +229,24 @@ class MIMoEnv(SensingEnv):
         """Returns MuJoCo's model of the scene, or what stands for it."""
         return self._core.model
 
+    @model.setter
+    def model(self, model: Any) -> None:
+        self._refuse_other("model")
+
     @property
     def data(self) -> Any:
         """Returns MuJoCo's present state, or what stands for it."""
         return self._core.data
+
+    @data.setter
+    def data(self, data: Any) -> None:
+        self._refuse_other("data")
+
+    def _refuse_other(self, name: str) -> NoReturn:
+        raise TypeError(
+            f"env.{name} cannot be replaced: the engine compiles the scene, and takes no other model. Write the scene as a file "
+            "and give its path to the constructor (model_path), or write into the arrays of env.model and env.data"
+        )
 
     @property
     def dt(self) -> float:
@@ -256,16 +288,24 @@ class MIMoEnv(SensingEnv):
 
     def _get_facial_expressions(self, emotion_textures: Mapping[str, str]) -> None:
         """Finds :attr:`facial_expressions`: the ids of the textures that ``emotion_textures`` names by expressions."""
-        textures: list[str] = _native.model_extras(self._core.blueprint)["texture"]
+        extras = _native.model_extras(self._core.blueprint)
+        textures: list[str] = extras["texture"]
+        materials: list[str] = extras["material"]
+        self._head_material_id = materials.index("head") if "head" in materials else None
         self.facial_expressions = {
             emotion: textures.index(name) for emotion, name in emotion_textures.items() if name in textures
         }
 
     def _set_initial_position(self, initial_qpos: Mapping[str, ArrayLike] | None) -> None:
+        """Puts joints at the positions that a dictionary has by their names."""
+        if not initial_qpos:
+            return
         array, joints = self._core.blueprint.model_array, self._core.names["joint"]
-        for name, position in (initial_qpos or {}).items():
+        qpos = self._core.read("qpos")
+        for name, position in initial_qpos.items():
             first = array("jnt_qposadr")[joints.index(name)]
-            self.init_qpos[first : first + np.size(position)] = position
+            qpos[first : first + np.size(position)] = position
+        self._core.move(qpos)
 
     def _set_action_space(self) -> None:
         """Makes :attr:`action_space`."""
@@ -437,6 +477,7 @@ _REMADE = frozenset(
         "vestibular",
         "actuation_model",
         "_own_seed",
+        "_tracking",
         "run_folder",
     }
 )

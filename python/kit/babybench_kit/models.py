@@ -11,8 +11,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from babybench_core import _native
+from babybench_core.mujoco.model import _fixed
 
 from .beneath import Beneath
+from .flat import flat
 from .standin import MUJOCO
 from .utils import JOINT_EQUALITY
 from .views import ModelView
@@ -56,12 +58,28 @@ def _with_small_textures(config: dict[str, Any], xml: str, images: dict[str, byt
     return ElementTree.tostring(root, encoding="unicode"), {**kept, **own_images}
 
 
+def _grow(model: Any, core: Beneath) -> None:
+    """Gives MuJoCo's model of a document the numbers of the engine's, in which MIMo has another age."""
+    for name in core.blueprint.MODEL_ARRAYS:
+        own, array = getattr(model, name, None), np.asarray(core.blueprint.model_array(name))
+        if name == "actuator_gear":
+            model.actuator_gear[:, 0] = array
+        elif isinstance(own, np.ndarray) and own.shape == array.shape and own.dtype.kind == "f":
+            own[...] = array
+
+
 def mujoco_model(mujoco: ModuleType, core: Beneath) -> Any:
     """Compiles the scene of an environment with MuJoCo; pictures on surfaces are the library's small ones."""
-    xml, images = _native.scene_file(core.config, core.assets)
-    if core.assets is not None:
-        xml, images = _with_small_textures(core.config, xml, images)
+    if core.document is not None:
+        root = flat(core.document.resolve())
+        xml, images = _with_small_textures({}, ElementTree.tostring(root, encoding="unicode"), {})
+    else:
+        xml, images = _native.scene_file(core.config, core.assets)
+        if core.assets is not None:
+            xml, images = _with_small_textures(core.config, xml, images)
     model = mujoco.MjModel.from_xml_string(xml, images)
+    if core.document is not None and core.config["age"] is not None:
+        _grow(model, core)
     # the defaults of MuJoCo 3.3.0, whose contacts the engine has
     for name in ("mjDSBL_MULTICCD", "mjDSBL_ISLAND"):
         model.opt.disableflags |= int(getattr(mujoco.mjtDisableBit, name, 0))
@@ -86,8 +104,7 @@ def view_model(core: Beneath) -> ModelView:
         for name in ("body_pos", "qpos0", "qpos_spring"):
             array = np.array(getattr(model, name))
             (array[1] if array.ndim > 1 else array)[:3] = core.place
-            array.flags.writeable = False
-            model.__dict__[name] = array
+            model.__dict__[name] = _fixed(array, name)
     return model
 
 
@@ -156,6 +173,14 @@ class Watched:
         self.options = options
         self.seen = [array.copy() for array in self.changeable]
         self.core.timestep = engine.dt / self.core.config["frame_skip"]
+
+    def show(self, changes: dict[str, NDArray[Any]]) -> None:
+        """Shows what the engine has changed by itself."""
+        for name, array in changes.items():
+            _put(self.model, name, np.asarray(array))
+        self.watch.changed(self.changeable)
+        self.seen = [array.copy() for array in self.changeable]
+        self.options = self._options()
 
     def _locks(self) -> list[tuple[int, float]]:
         active = np.asarray(self.model.eq_active0).tolist()

@@ -6,7 +6,7 @@ from typing import Any
 
 import gymnasium as gym
 
-from . import experiments
+from .assets import scene_path
 
 IDS = {
     "BabyBench": "BabyBenchEnv",
@@ -14,6 +14,24 @@ IDS = {
     "BabyBench-HandRegard": "BabyBenchHandRegardEnv",
 }
 """Ids of the environments, with their classes."""
+
+MIMO_IDS: dict[str, tuple[str, int | None]] = {
+    "MIMoBench-v0": ("MIMoDummyEnv", 6000),
+    "MIMoBenchV2-v0": ("MIMoV2DummyEnv", 6000),
+    "MIMoShowroom-v0": ("MIMoV2DummyEnv", 500),
+    "MIMoReach-v0": ("MIMoReachEnv", 1000),
+    "MIMoStandup-v0": ("MIMoStandupEnv", 500),
+    "MIMoSelfBody-v0": ("MIMoSelfBodyEnv", 500),
+    "MIMoCatch-v0": ("MIMoCatchEnv", 800),
+    "MIMoMuscle-v0": ("MIMoMuscleDummyEnv", 6000),
+    "MIMoMuscleStaticTest-v0": ("MIMoStaticMuscleTestEnv", 5000),
+    "MIMoVelocityMuscleTest-v0": ("MIMoVelocityMuscleTestEnv", 3000),
+    "MIMoMuscleStaticTestV2-v0": ("MIMoStaticMuscleTestV2Env", 5000),
+    "MIMoVelocityMuscleTestV2-v0": ("MIMoVelocityMuscleTestV2Env", 3000),
+    "MIMoComplianceTest-v0": ("MIMoComplianceEnv", None),
+    "MIMoComplianceMuscleTest-v0": ("MIMoComplianceMuscleEnv", None),
+}
+"""Ids of MIMo's own environments, with their classes in ``mimoEnv.envs`` and the steps of an episode."""
 
 
 def _forwarded(self: gym.Wrapper[Any, Any, Any, Any], name: str) -> Any:
@@ -40,8 +58,7 @@ def register_kit() -> None:
         # a seed alone does not decide how an episode starts: see MIMoEnv.reset
         entry_point = f"babybench_kit.env:{cls}"
         gym.register(id=name, entry_point=entry_point, max_episode_steps=1000, nondeterministic=True)
-    for name, (experiment, steps) in experiments.IDS.items():
-        entry_point = f"{experiments.__name__}:{experiment.__name__}"
-        gym.register(id=name, entry_point=entry_point, max_episode_steps=steps, disable_env_checker=True)
-    for name in experiments.ELSEWHERE:
-        gym.register(id=name, entry_point=f"{experiments.__name__}:refuse", kwargs={"experiment": name})
+    for name, (cls, steps) in MIMO_IDS.items():
+        kwargs = {"model_path": scene_path("showroom.xml"), "render_mode": "human"} if name == "MIMoShowroom-v0" else {}
+        entry_point = f"mimoEnv.envs:{cls}"
+        gym.register(id=name, entry_point=entry_point, max_episode_steps=steps, kwargs=kwargs, nondeterministic=True)

@@ -7,8 +7,13 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from babybench_core.window import Window
+
 if TYPE_CHECKING:
     from .core import Core
+
+Camera = tuple[list[float], float, float, float]
+"""A free camera: the point that it looks at, m, its distance from it, m, azimuth and elevation, degrees."""
 
 ROOM = "corner"
 """The camera of pictures for which none is asked."""
@@ -22,6 +27,8 @@ class MujocoRenderer:
         self._core = core
         self._viewers: dict[str, Any] = {}
         self.viewer = None
+        self._window: Window | None = None
+        self._shown = 0.0
         self.default_cam_config = default_cam_config
 
     @property
@@ -34,7 +41,15 @@ class MujocoRenderer:
         """Returns the environment's state."""
         return self._core.data
 
-    def _camera(self, camera_id: int | None, camera_name: str | None) -> str:
+    def _free(self) -> Camera:
+        """Returns the camera of scenes without one for the room: from a distance at the middle of the scene, or as configured."""
+        core, given = self._core, self.default_cam_config or {}
+        lookat = given.get("lookat", np.median(core.present.geom_xpos, axis=0))
+        distance = given.get("distance", core.blueprint.model_options["extent"])
+        turned = (float(given.get("azimuth", 90.0)), float(given.get("elevation", -45.0)))
+        return np.asarray(lookat, dtype=np.float64).tolist(), float(distance), *turned
+
+    def _camera(self, camera_id: int | None, camera_name: str | None) -> str | Camera:
         cameras = self._core.names["camera"]
         if camera_id is not None and camera_name is not None:
             raise ValueError("Both `camera_id` and `camera_name` cannot be specified at the same time.")
@@ -43,7 +58,7 @@ class MujocoRenderer:
                 raise ValueError(f"there is no camera {camera_name!r}; there are {', '.join(cameras)}")
             return camera_name
         if camera_id is None or camera_id == -1:
-            return ROOM
+            return ROOM if ROOM in cameras else self._free()
         if not 0 <= camera_id < len(cameras):
             raise ValueError(f"there is no camera {camera_id}; there are {len(cameras)}: {', '.join(cameras)}")
         return cameras[camera_id]
@@ -56,8 +71,8 @@ class MujocoRenderer:
         Args:
             render_mode: ``rgb_array``, or ``depth_array`` for the depth buffer: 0 at the near plane, 1 at the far one.
             camera_id: Id of the camera.
-            camera_name: Name of the camera: ``corner`` (also without any), ``top``, ``side1``, ``side2``, ``closeup``,
-                ``eye_left``, ``eye_right``.
+            camera_name: Name of the camera: ``eye_left``, ``eye_right``, and in BabyBench's scenes ``corner`` (also without any),
+                ``top``, ``side1``, ``side2``, ``closeup``. Other scenes have a free camera, ``default_camera_config``.
 
         Returns:
             Red, green and blue, (height, width, 3) bytes, or depths, (height, width); rows from the top.
@@ -75,11 +90,23 @@ class MujocoRenderer:
             depth = (1 / near - 1 / distance.astype(np.float64)) / (1 / near - 1 / far)
             return np.asarray(depth, dtype=np.float32)
         if render_mode == "human":
-            raise NotImplementedError(
-                "render_mode human: there is no window here. Show render_mode='rgb_array' with matplotlib or OpenCV, or use "
-                "babybench.make(..., render_mode='human')"
-            )
-        raise ValueError(f"render_mode: {render_mode!r} does not exist; there are rgb_array and depth_array")
+            camera = self._camera(camera_id, camera_name)
+            self._show(camera if isinstance(camera, str) and (camera_id, camera_name) != (None, None) else None)
+            return None
+        raise ValueError(f"render_mode: {render_mode!r} does not exist; there are human, rgb_array and depth_array")
+
+    def _show(self, camera: str | None) -> None:
+        """Shows the present in a window, and waits until it is time for the next step."""
+        core = self._core
+        if self._window is None:
+            self._window = Window("MIMo", core.engine, (core.width, core.height), camera)
+            self._shown = core.engine.time
+        now = core.engine.time
+        self._window.show(max(now - self._shown, 0.0))
+        self._shown = now
 
     def close(self) -> None:
-        """Does nothing: there is no window and no context."""
+        """Closes the window, if there is one."""
+        if self._window is not None:
+            self._window.close()
+        self._window = None

@@ -7,20 +7,24 @@ import sys
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
+from xml.etree import ElementTree
 
 from babybench_core import _native
 
+from .flat import flat
 from .tables import GROUND, PARTS, VERSIONS
 
 _INCLUDE = re.compile(r'<include\s+file="([^"]*)"\s*(?:/>|>\s*</include>)')
 _COMMENT = re.compile(r"<!--.*?-->", re.DOTALL)
 _ROOT = re.compile(r'<body\s+name="mimo_location"\s+([^>]*)>')
+_SCENE_KEY = re.compile(r"""^\s*["']?scene["']?\s*:""", re.MULTILINE)
 _BUILT = {"mujoco", "worldbody", "body", "freejoint", "include"}
 """Elements of a document that includes everything else, as BabyBench builds it."""
 
 UNSERVED = (
-    "{path}: {what}; this engine serves the scenes that babybench.build_xml.build writes. "
-    "Change the files that such a scene includes (they are read from where it names them), or run this scene with MuJoCo"
+    "{path}: {what}; BabyBench's own environments take the scenes that babybench.build_xml.build writes. "
+    "Change the files that such a scene includes (they are read from where it names them), or subclass "
+    "mimoEnv.envs.mimo_env.MIMoEnv, which takes any scene with MIMo"
 )
 
 
@@ -42,6 +46,8 @@ class Scene:
     """Where MIMo is put, if elsewhere than BabyBench does: ``pos``, m."""
     servos: bool | None = None
     """Whether its actuators are position servos; nothing if it has none."""
+    document: Path | None = None
+    """The document, if it is compiled as it stands: any scene with MIMo."""
 
 
 def _attributes(text: str) -> dict[str, str]:
@@ -70,8 +76,10 @@ def _place(path: Path, text: str, scene: str) -> dict[str, list[float]] | None:
 def _complete(path: Path, text: str) -> Scene:
     """Reads a scene that holds everything itself, with its configuration in a comment, as this library writes it."""
     comment = _COMMENT.match(text)
+    if comment is None or _SCENE_KEY.search(comment.group(0)) is None:
+        raise SceneError(UNSERVED.format(path=path, what="it includes nothing of BabyBench"))
     try:
-        config = _native.config_from_yaml(comment.group(0)[4:-3] if comment else "", str(path))
+        config = _native.config_from_yaml(comment.group(0)[4:-3], str(path))
     except ValueError as error:
         raise SceneError(UNSERVED.format(path=path, what="it includes nothing of BabyBench")) from error
     keys = {key: config[key] for key in ("scene", *(f"act_{part}" for part in PARTS))}
@@ -114,6 +122,27 @@ def read_scene(path: Path) -> Scene:
         place=_place(path, body, scene),
         servos=any(found[0] == "position" for found in actuators) if actuators else None,
     )
+
+
+def read_any_scene(path: Path) -> Scene:
+    """Reads what a document is made of, which may be any with MIMo.
+
+    Raises:
+        FileNotFoundError: There is no such file.
+    """
+    try:
+        return read_scene(path)
+    except (SceneError, KeyError):
+        return Scene(version=_version(path), document=path)
+
+
+def _version(path: Path) -> str:
+    """Returns the version of MIMo in a document: v2 has fingers."""
+    try:
+        names = {body.get("name") for body in flat(path).iter("body")}
+    except (OSError, ValueError, ElementTree.ParseError):
+        return "v1"  # the compiler says what is wrong
+    return "v2" if "right_ffdistal" in names else "v1"
 
 
 def kit_assets() -> Path | None:

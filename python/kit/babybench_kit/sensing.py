@@ -105,6 +105,8 @@ class SensingEnv(gym.Env):  # type: ignore[type-arg,unused-ignore]
             and all(type(sense) in known for sense in senses)
             and not any(sense._replaced for sense in senses if isinstance(sense, Replaceable))
             and (self.touch is None or self.touch._plain)
+            and (self.vision is None or self._core.config["vision_active"])
+            and (self.vestibular is None or self._core.config["vestibular_active"])
             and components == set(SimpleProprioception.VALID_COMPONENTS)
             and self._core.plain_actuation
             and not self.goals_in_observation

@@ -6,6 +6,7 @@ import functools
 import json
 import warnings
 from collections.abc import Mapping
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -36,39 +37,42 @@ def known(config: Mapping[str, Any]) -> dict[str, Any]:
     return {key: value for key, value in config.items() if key in _keys() and value is not None}
 
 
-def _touch(params: Mapping[str, Any]) -> dict[str, Any]:
-    """Returns the keys of a configuration that give the sensors of touch parameters."""
-    scales = params["scales"]
-    factors = {round(scale / SPACING_V1[body], 12) for body, scale in scales.items() if body in SPACING_V1}
+def _names(params: Mapping[str, Any]) -> dict[str, Any]:
+    """Returns the keys of a configuration that name the functions of touch parameters."""
     keys: dict[str, Any] = {"touch_active": True}
     for key, function in (("touch_function", "touch_function"), ("touch_response", "response_function")):
         # a name that the engine does not have is that of a method of the sense, which does without the engine
         known = _native.config_keys()[key]["choices"]
         keys[key] = params[function] if params[function] in known else known[-1]
-    groups = {part: [body for body in SPACING_V1 if PART_OF_BODY[body] == part] for part in PARTS}
-    for part, bodies in groups.items():
-        on = [body in scales for body in bodies]
-        if any(on) != all(on):
-            raise ValueError(
-                f"touch_params: {part} are partly with sensors; the engine turns the parts of the body on and off "
-                "as a whole, with the keys touch_* of a configuration"
-            )
-        keys[f"touch_{part}"] = all(on)
-    if len(factors) > 1 or any(body not in SPACING_V1 for body in scales):
-        raise ValueError(
-            "touch_params: these scales are not MIMo's own times one number; the engine takes that number as touch_scale"
-        )
-    keys["touch_scale"] = factors.pop() if factors else 1.0
     return keys
+
+
+def _touch(params: Mapping[str, Any]) -> dict[str, Any] | None:
+    """Returns the keys of a configuration that give the sensors of touch parameters; nothing if no keys give them."""
+    scales = params["scales"]
+    factors = {round(scale / SPACING_V1[body], 12) for body, scale in scales.items() if body in SPACING_V1}
+    keys = _names(params)
+    for part in PARTS:
+        on = [body in scales for body in SPACING_V1 if PART_OF_BODY[body] == part]
+        if any(on) != all(on):
+            return None
+        keys[f"touch_{part}"] = all(on)
+    if len(factors) != 1 or any(body not in SPACING_V1 for body in scales):
+        return None
+    keys["touch_scale"] = factors.pop()
+    return keys
+
+
+def _own_touch(params: Mapping[str, Any]) -> tuple[dict[str, Any], list[tuple[str, float]]]:
+    """Returns the keys of a configuration and the distances between sensors of touch parameters, whatever they are."""
+    keys = {**_names(params), **{f"touch_{part}": True for part in PARTS}, "touch_scale": 1.0}
+    return keys, [(str(body), float(scale)) for body, scale in params["scales"].items()]
 
 
 def _vision(params: Mapping[str, Any]) -> dict[str, Any]:
     """Returns the keys of a configuration that give the eyes of vision parameters."""
     if set(params) != {"eye_left", "eye_right"}:
-        raise ValueError(
-            "vision_params: the engine draws eye_left and eye_right for the observation; "
-            "other cameras are drawn by env.mujoco_renderer.render(camera_name=...)"
-        )
+        return {"vision_active": False}  # the sense draws these cameras itself
     sizes = {(eye["width"], eye["height"]) for eye in params.values()}
     if len(sizes) == 1 and len(set(*sizes)) == 1:
         return {"vision_active": True, "vision_resolution": sizes.pop()[0]}
@@ -91,7 +95,17 @@ def _actuators(keys: dict[str, Any], scene: Scene) -> None:
         )
 
 
-def engine_config(
+@dataclass
+class Settings:
+    """What the engine needs of the arguments of MIMo's constructor."""
+
+    config: dict[str, Any]
+    """The complete configuration."""
+    spacing: list[tuple[str, float]] | None = None
+    """Bodies and the distances between their touch sensors, m, if no configuration gives them."""
+
+
+def engine_settings(
     config: Mapping[str, Any],
     scene: Scene,
     *,
@@ -102,23 +116,45 @@ def engine_config(
     vision: Mapping[str, Any] | None,
     balance: Mapping[str, Any] | None,
     actuation: str,
-) -> dict[str, Any]:
-    """Returns the complete configuration of the engine for the arguments of MIMo's constructor."""
+    age: float | None = None,
+) -> Settings:
+    """Returns what the engine needs of the arguments of MIMo's constructor."""
     keys = {"compat": "reference", **known(config)}
     keys.update(_FORGOTTEN)
     keys.update(frame_skip=frame_skip, render_size=size, actuation_model=actuation)
+    if age is not None:
+        keys["age"] = age
     keys["vestibular_active"] = balance is not None
-    keys.update(_touch(touch) if touch is not None else {"touch_active": False})
     keys.update(_vision(vision) if vision is not None else {"vision_active": False})
-    _actuators(keys, scene)
+    spacing = None
+    if touch is None or not touch["scales"]:
+        keys["touch_active"] = False
+    elif scene.document is None and (usual := _touch(touch)) is not None:
+        keys.update(usual)
+    elif behavior != "none":
+        raise ValueError(
+            "touch_params: BabyBench's behaviors have MIMo's own distances between sensors times one number (touch_scale), on "
+            "whole parts of the body (touch_*); subclass mimoEnv.envs.mimo_env.MIMoEnv for others"
+        )
+    else:
+        own, spacing = _own_touch(touch)
+        keys.update(own)
+    if scene.document is None:
+        _actuators(keys, scene)
+        behavior = _behavior(behavior, scene)
+    keys["behavior"] = behavior
+    return Settings(dict(_native.config_from_mapping(keys)), spacing)
+
+
+def _behavior(behavior: str, scene: Scene) -> str:
+    """Returns the behavior of the engine, which has one version of MIMo."""
     if scene.version == "v2":
         if behavior == "self_touch":
             raise ValueError("behavior: self_touch has MIMo v1 here, but the scene has MIMo v2")
-        behavior = "hand_regard"
-    elif behavior == "hand_regard":
+        return "hand_regard"
+    if behavior == "hand_regard":
         raise ValueError("behavior: hand_regard has MIMo v2 here, but the scene has MIMo v1")
-    keys["behavior"] = behavior
-    return dict(_native.config_from_mapping(keys))
+    return behavior
 
 
 @functools.lru_cache(maxsize=2)
@@ -126,6 +162,18 @@ def _blueprint(config: str, assets: Path | None) -> _native.Blueprint:
     return _native.Blueprint(json.loads(config), assets)
 
 
-def blueprint(config: Mapping[str, Any], assets: Path | None) -> _native.Blueprint:
-    """Returns the compiled scene of a configuration; the last two are kept."""
-    return _blueprint(json.dumps(dict(config), sort_keys=True), assets)
+def blueprint(settings: Settings, scene: Scene) -> _native.Blueprint:
+    """Returns the compiled scene of a configuration; the last two of BabyBench's are kept."""
+    config = settings.config
+    if scene.document is None and settings.spacing is None:
+        return _blueprint(json.dumps(config, sort_keys=True), scene.assets)
+    if scene.document is None:
+        return _native.Blueprint.by_hand(config, touch_spacing=settings.spacing or [], assets=scene.assets)
+    path = scene.document.resolve()
+    return _native.Blueprint.by_hand(
+        config,
+        document=path.read_text(encoding="utf-8"),
+        version=scene.version,
+        folder=path.parent,
+        touch_spacing=settings.spacing or [],
+    )

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 CHOICE = "BABYBENCH_MIMO"
 """The variable that decides: ``babybench`` or ``original``."""
-MIMO = ("mimoActuation", "mimoEnv", "mimoProprioception", "mimoTouch", "mimoVestibular", "mimoVision")
+MIMO = ("mimoActuation", "mimoEnv", "mimoGrowth", "mimoProprioception", "mimoTouch", "mimoVestibular", "mimoVision")
 """Packages of MIMo."""
 
 _SERVED_BY_MIMO = (

@@ -90,6 +90,12 @@ def vestibular_params() -> dict[str, Any]:
     return {"sensors": ["vestibular_acc", "vestibular_gyro"]}
 
 
+# Parameters of MIMo's own environments where none are given, which ``mimoEnv.envs.mimo_env`` calls DEFAULT_..._PARAMS.
+PROPRIOCEPTION_DEFAULTS = proprioception_params()
+VISION_DEFAULTS = vision_params(256)
+VESTIBULAR_DEFAULTS = vestibular_params()
+TOUCH_DEFAULTS = touch_params()
+TOUCH_DEFAULTS_V2 = touch_params(SPACING_V2)
 # Parameters of BabyBench's environments where none are given. As in the kit, scripts can change them.
 PROPRIOCEPTION_PARAMS = proprioception_params()
 VISION_PARAMS = vision_params(64)

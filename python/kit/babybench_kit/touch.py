@@ -98,6 +98,12 @@ class Touch(Replaceable):
         self.env = env
         self._core = env._core
         ids = {name: number for number, name in enumerate(env._core.names["body"])}
+        missing = [body for body in touch_params["scales"] if body not in ids]
+        if missing:
+            raise KeyError(
+                f"touch_params: the scene has no {', '.join(missing)}. MIMo v1 has the bodies of DEFAULT_TOUCH_PARAMS, v2 with "
+                "fingers those of DEFAULT_TOUCH_PARAMS_V2"
+            )
         scales = {ids[body]: scale for body, scale in touch_params["scales"].items()}
         self.sensor_scales: dict[int, float] = Spacings(scales, self._taken_over)
         self.touch_type: str = touch_params["touch_function"]

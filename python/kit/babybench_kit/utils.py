@@ -6,8 +6,7 @@ matrices whose columns are the axes in the world; vectors have the shape (3,) or
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from typing import Any
+from typing import Any, NoReturn
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -158,6 +157,20 @@ def unlock_joint(mujoco_model: Any, joint_name: str) -> None:
     mujoco_model.eq_active0[mujoco_model.equality(joint_name).id] = 0
 
 
+def determine_geom_masses(
+    mujoco_model: Any, mujoco_data: Any, body_ids: list[int], target_mass: float, print_out: bool = False
+) -> NoReturn:
+    """Refuses: MIMo's own joins meshes of geoms to find their volumes.
+
+    Raises:
+        NotImplementedError: Always.
+    """
+    raise NotImplementedError(
+        "determine_geom_masses needs the volumes of joined meshes, which are not computed here: MIMo's own does, with trimesh "
+        "(BABYBENCH_MIMO=original). babybench.make(..., age=...) has masses for every age"
+    )
+
+
 # --- frames ---
 
 
@@ -229,27 +242,44 @@ def world_pos_to_body(mujoco_data: Any, position: ArrayLike, body_id: int) -> Ar
     return world_rot_to_body(mujoco_data, np.asarray(position) - get_body_position(mujoco_data, body_id), body_id)
 
 
-Conversion = Callable[[Any, ArrayLike, int], Array]
+def geom_pos_to_body(mujoco_data: Any, position: ArrayLike, geom_id: int, body_id: int) -> Array:
+    """Moves positions from a geom's frame to a body's."""
+    return world_pos_to_body(mujoco_data, geom_pos_to_world(mujoco_data, position, geom_id), body_id)
 
 
-def _between(doc: str, to_world: Conversion, from_world: Conversion) -> Callable[[Any, ArrayLike, int, int], Array]:
-    """Makes a conversion by way of the world."""
-
-    def convert(mujoco_data: Any, values: ArrayLike, source_id: int, target_id: int) -> Array:
-        return from_world(mujoco_data, to_world(mujoco_data, values, source_id), target_id)
-
-    convert.__doc__ = doc
-    return convert
+def body_pos_to_geom(mujoco_data: Any, position: ArrayLike, body_id: int, geom_id: int) -> Array:
+    """Moves positions from a body's frame to a geom's."""
+    return world_pos_to_geom(mujoco_data, body_pos_to_world(mujoco_data, position, body_id), geom_id)
 
 
-geom_pos_to_body = _between("Moves positions from a geom's frame to a body's.", geom_pos_to_world, world_pos_to_body)
-body_pos_to_geom = _between("Moves positions from a body's frame to a geom's.", body_pos_to_world, world_pos_to_geom)
-geom_pos_to_geom = _between("Moves positions from a geom's frame to another's.", geom_pos_to_world, world_pos_to_geom)
-body_pos_to_body = _between("Moves positions from a body's frame to another's.", body_pos_to_world, world_pos_to_body)
-geom_rot_to_body = _between("Turns vectors from a geom's frame to a body's.", geom_rot_to_world, world_rot_to_body)
-body_rot_to_geom = _between("Turns vectors from a body's frame to a geom's.", body_rot_to_world, world_rot_to_geom)
-geom_rot_to_geom = _between("Turns vectors from a geom's frame to another's.", geom_rot_to_world, world_rot_to_geom)
-body_rot_to_body = _between("Turns vectors from a body's frame to another's.", body_rot_to_world, world_rot_to_body)
+def geom_pos_to_geom(mujoco_data: Any, position: ArrayLike, geom_id_source: int, geom_id_target: int) -> Array:
+    """Moves positions from a geom's frame to another's."""
+    return world_pos_to_geom(mujoco_data, geom_pos_to_world(mujoco_data, position, geom_id_source), geom_id_target)
+
+
+def body_pos_to_body(mujoco_data: Any, position: ArrayLike, body_id_source: int, body_id_target: int) -> Array:
+    """Moves positions from a body's frame to another's."""
+    return world_pos_to_body(mujoco_data, body_pos_to_world(mujoco_data, position, body_id_source), body_id_target)
+
+
+def geom_rot_to_body(mujoco_data: Any, vector: ArrayLike, geom_id: int, body_id: int) -> Array:
+    """Turns vectors from a geom's frame to a body's."""
+    return world_rot_to_body(mujoco_data, geom_rot_to_world(mujoco_data, vector, geom_id), body_id)
+
+
+def body_rot_to_geom(mujoco_data: Any, vector: ArrayLike, body_id: int, geom_id: int) -> Array:
+    """Turns vectors from a body's frame to a geom's."""
+    return world_rot_to_geom(mujoco_data, body_rot_to_world(mujoco_data, vector, body_id), geom_id)
+
+
+def geom_rot_to_geom(mujoco_data: Any, vector: ArrayLike, geom_id_source: int, geom_id_target: int) -> Array:
+    """Turns vectors from a geom's frame to another's."""
+    return world_rot_to_geom(mujoco_data, geom_rot_to_world(mujoco_data, vector, geom_id_source), geom_id_target)
+
+
+def body_rot_to_body(mujoco_data: Any, vector: ArrayLike, body_id_source: int, body_id_target: int) -> Array:
+    """Turns vectors from a body's frame to another's."""
+    return world_rot_to_body(mujoco_data, body_rot_to_world(mujoco_data, vector, body_id_source), body_id_target)
 
 
 # --- angles ---

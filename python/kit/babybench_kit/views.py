@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from babybench_core import _native
 from babybench_core.contacts import ContactList
+from babybench_core.mujoco.model import _fixed
 from babybench_core.named import KINDS as _KINDS
 from babybench_core.named import PREFIX as _PREFIX
 from babybench_core.named import Named as _Named
@@ -148,10 +149,8 @@ class ModelView(_Named):
                 array = array.astype(np.float32)
             elif name in _WIDTHS:
                 array = _widened(array, _WIDTHS[name])
-        if name in _WRITABLE:
-            array = array.copy()  # it owns its numbers, as what is written to has to
-        else:
-            array.flags.writeable = False
+        # what is written to owns its numbers
+        array = array.copy() if name in _WRITABLE else _fixed(array, name)
         self.__dict__[name] = array
         return array
 
@@ -225,6 +224,10 @@ class DataView(_Named):
         raise AttributeError(_DATA_HELP.format(name=name))
 
     def __setattr__(self, name: str, value: Any) -> None:
+        if name == "eq_active":
+            raise AttributeError(
+                "data.eq_active cannot be written: write model.eq_active0, which holds from the next reset on"
+            )
         if name not in self._arrays:
             raise AttributeError(f"{name} of the state cannot be replaced")
         self._arrays[name][...] = value
@@ -237,6 +240,14 @@ class DataView(_Named):
     def _own(self) -> Any:
         """Returns what the functions of MuJoCo advance."""
         return self._sync
+
+    @property
+    def eq_active(self) -> NDArray[np.uint8]:
+        """Returns which equality constraints hold now; ``model.eq_active0`` decides which will from the next reset on."""
+        active, parts = np.zeros(self.model.neq, np.uint8), self._sync.core.parts
+        parts.fill_start(active, [np.zeros(self.model.nq), np.zeros(self.model.nv)])
+        active.flags.writeable = False
+        return active
 
     @property
     def contact(self) -> ContactList:

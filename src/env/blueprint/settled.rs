@@ -26,7 +26,7 @@ pub fn make_skin(
     task: &dyn Task,
     assets: &dyn AssetSource,
 ) -> Result<SkinLayout, EnvError> {
-    let layout = |model: &Model| match task.document(config).touch_spacing {
+    let layout = |model: &Model| match &task.document(config).touch_spacing[..] {
         [] => SkinLayout::new(model, config),
         own => SkinLayout::with_spacing(model, |body| {
             let found = own.iter().find(|(name, _)| *name == body);

@@ -4,7 +4,7 @@ use super::pose::free_address;
 use super::scene::{TaskScene, TaskView};
 use super::starts::relax;
 use super::tracking::HeadTracking;
-use super::{Goal, StepReward, Task, TaskDocument, TaskSizes, body};
+use super::{Goal, StepReward, Task, TaskDocument, TaskSizes, body, spacing};
 use crate::config::{Compat, Config};
 use crate::env::EnvError;
 use crate::math::{Vec3, add, norm, sub};
@@ -197,7 +197,7 @@ impl Task for Catch {
 
     fn document(&self, config: &Config) -> TaskDocument {
         TaskDocument {
-            touch_spacing: TOUCH,
+            touch_spacing: spacing(TOUCH),
             ..TaskDocument::of(config)
         }
     }

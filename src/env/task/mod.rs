@@ -52,7 +52,7 @@ pub struct TaskDocument {
     pub version: Version,
     /// The bodies with touch sensors and the distances between sensors, m, at `touch_scale: 1`; none for MIMo's own table with the keys
     /// `touch_...`. Observations are ordered by body id regardless of this order.
-    pub touch_spacing: &'static [(&'static str, f64)],
+    pub touch_spacing: Vec<(String, f64)>,
 }
 
 impl TaskDocument {
@@ -61,9 +61,17 @@ impl TaskDocument {
         Self {
             xml: scene_xml(config),
             version: Version::of(config.behavior),
-            touch_spacing: &[],
+            touch_spacing: Vec::new(),
         }
     }
+}
+
+/// Returns a table of touch sensors as [`TaskDocument::touch_spacing`] takes it.
+fn spacing(table: &[(&str, f64)]) -> Vec<(String, f64)> {
+    table
+        .iter()
+        .map(|(body, distance)| (body.to_string(), *distance))
+        .collect()
 }
 
 /// The value of a step.

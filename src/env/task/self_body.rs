@@ -3,7 +3,7 @@
 use super::pose::{Angles, free_address, own_joint, set_angles};
 use super::scene::{TaskScene, TaskView};
 use super::starts::relax;
-use super::{Goal, StepReward, Task, TaskDocument, TaskSizes, body};
+use super::{Goal, StepReward, Task, TaskDocument, TaskSizes, body, spacing};
 use crate::config::{Compat, Config};
 use crate::env::EnvError;
 use crate::math::{norm, sub};
@@ -155,7 +155,7 @@ impl Task for SelfBody {
 
     fn document(&self, config: &Config) -> TaskDocument {
         TaskDocument {
-            touch_spacing: TOUCH,
+            touch_spacing: spacing(TOUCH),
             ..TaskDocument::of(config)
         }
     }

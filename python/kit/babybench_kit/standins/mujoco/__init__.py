@@ -10,14 +10,18 @@ from typing import Any, NoReturn
 import numpy as np
 from numpy.typing import NDArray
 
+from babybench_core.mujoco import constants as _constants
 from babybench_core.mujoco import enums as _enums
 from babybench_core.mujoco import functions as _functions
 from babybench_core.mujoco import jacobians as _jacobians
 from babybench_core.mujoco import maths as _maths
+from babybench_core.mujoco import more_enums as _more_enums
+from babybench_core.mujoco.constants import *  # noqa: F403
 from babybench_core.mujoco.enums import *  # noqa: F403
 from babybench_core.mujoco.functions import *  # noqa: F403
 from babybench_core.mujoco.jacobians import *  # noqa: F403
 from babybench_core.mujoco.maths import *  # noqa: F403
+from babybench_core.mujoco.more_enums import *  # noqa: F403
 from babybench_kit.views import DataView as MjData
 from babybench_kit.views import ModelView as MjModel
 
@@ -27,7 +31,9 @@ stands_in = True
 __version__ = "0.0.0+babybench"
 
 __all__ = ["MjData", "MjModel", "Renderer"]
-__all__ += _enums.__all__ + _functions.__all__ + _jacobians.__all__ + _maths.__all__
+__all__ += (
+    _constants.__all__ + _enums.__all__ + _more_enums.__all__ + _functions.__all__ + _jacobians.__all__ + _maths.__all__
+)
 
 
 class Renderer:

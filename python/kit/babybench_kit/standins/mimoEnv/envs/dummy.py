@@ -1,7 +1,17 @@
-"""MIMo without a task, which this package has under other names."""
+"""MIMo without a task."""
 
-from babybench_kit.experiments import missing
+from babybench_kit.assets import written
+from babybench_kit.tasks import dummy
+from babybench_kit.tasks.dummy import MIMoDummyEnv, MIMoMuscleDummyEnv, MIMoV2DummyEnv
 
+__all__ = ["MIMoDummyEnv", "MIMoMuscleDummyEnv", "MIMoV2DummyEnv"]
 
-def __getattr__(name: str) -> object:
-    return missing(__name__, name)
+__getattr__ = written(
+    __name__,
+    {
+        "BENCHMARK_XML": dummy.BENCHMARK_XML,
+        "BENCHMARK_XML_V2": dummy.BENCHMARK_XML_V2,
+        "DEMO_XML": dummy.DEMO_XML,
+        "TEST_XML": dummy.TEST_XML,
+    },
+)

@@ -1,0 +1,1 @@
+"""MIMo at other ages."""

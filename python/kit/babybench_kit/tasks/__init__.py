@@ -1,0 +1,1 @@
+"""MIMo's own environments: tasks with goals, environments without a task, tests of muscles."""

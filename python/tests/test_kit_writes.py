@@ -1,0 +1,105 @@
+"""What scripts write into ``env.model`` and ``env.data`` acts or is refused by name, where MuJoCo is not installed."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from mimoEnv.envs.dummy import MIMoDummyEnv
+from mimoEnv.envs.mimo_env import SCENE_DIRECTORY
+
+import mujoco
+
+pytestmark = pytest.mark.skipif(not getattr(mujoco, "stands_in", False), reason="MuJoCo's own arrays say less")
+
+FIXED = ("body_pos", "body_quat", "geom_rgba", "geom_group", "geom_pos", "cam_fovy", "cam_pos", "jnt_range", "site_pos")
+SCENE = """<mujoco>
+  <option gravity="0 0 0" timestep="0.005" iterations="50" tolerance="1e-10" cone="elliptic" jacobian="dense"/>
+  <compiler angle="degree" inertiafromgeom="true"/>
+  <include file="{folder}/mimo/MIMo_meta.xml"/>
+  <worldbody>
+    <body name="mimo_location" pos="0 0 1"><freejoint/><include file="{folder}/mimo/MIMo_model.xml"/></body>
+    <body name="toy" pos="2 0 1"><freejoint/><geom size=".05" mass="1"/></body>
+    <body name="hand" mocap="true" pos="3 0 1"><geom size=".02"/></body>
+  </worldbody>
+</mujoco>"""
+
+
+@pytest.fixture
+def env(tmp_path: Path) -> Any:
+    path = tmp_path / "toy.xml"
+    path.write_text(SCENE.format(folder=SCENE_DIRECTORY))
+    env = MIMoDummyEnv(path, frame_skip=20, touch_params=None, vision_params=None)
+    env.reset(seed=0)
+    return env
+
+
+@pytest.mark.parametrize("name", FIXED)
+def test_writing_to_a_fixed_array_names_it(env: Any, name: str) -> None:
+    before = np.array(getattr(env.model, name))
+    with pytest.raises(ValueError, match=rf"model\.{name} cannot be changed"):
+        getattr(env.model, name)[0] = 0.5
+    with pytest.raises(AttributeError, match=name):
+        setattr(env.model, name, before)
+    assert np.array_equal(getattr(env.model, name), before)
+
+
+def test_a_force_on_a_body_acts(env: Any) -> None:
+    env.data.xfrc_applied[env.model.body("toy").id, 0] = 1.0
+    env.step(np.zeros(env.action_space.shape))
+    assert env.data.qvel[-6] == pytest.approx(0.1)  # 1 N on 1 kg for 20 steps of 5 ms
+    env.data.xfrc_applied[:] = 0
+    env.data.qfrc_applied[-6] = -1.0
+    env.step(np.zeros(env.action_space.shape))
+    assert env.data.qvel[-6] == pytest.approx(0.0, abs=1e-9)
+
+
+def test_a_mocap_body_goes_where_it_is_put(env: Any) -> None:
+    env.data.mocap_pos[0] = 0.5, 0.6, 0.7
+    env.data.mocap_quat[0] = 0, 1, 0, 0
+    env.step(np.zeros(env.action_space.shape))
+    assert np.allclose(env.data.body("hand").xpos, [0.5, 0.6, 0.7])
+    assert np.allclose(env.data.body("hand").xquat, [0, 1, 0, 0])
+
+
+def test_locks_hold_from_the_next_reset_on(env: Any) -> None:
+    lock = env.model.equality("robot:right_elbow").id
+    with pytest.raises(AttributeError, match="eq_active0"):
+        env.data.eq_active = np.ones(env.model.neq)
+    assert env.data.eq_active[lock] == 0
+    env.model.eq_active0[lock] = 1
+    env.model.eq_data[lock, 0] = -0.5
+    env.reset()
+    assert env.data.eq_active[lock] == 1
+    for _ in range(30):
+        env.step(np.zeros(env.action_space.shape))
+    assert env.data.joint("robot:right_elbow").qpos[0] == pytest.approx(-0.5, abs=0.02)
+
+
+def test_constants_follow_masses(env: Any) -> None:
+    toy = env.model.body("toy").id
+    env.model.body_mass[toy] = 0.25
+    env.model.body_inertia[toy] = 0.0001
+    mujoco.mj_setConst(env.model, env.data)
+    assert np.allclose(env.model.body_invweight0[toy], [4, 10000])
+    assert np.allclose(env.model.dof_M0[-6:], [0.25] * 3 + [0.0001] * 3)
+    env.step(np.zeros(env.action_space.shape))
+
+
+def test_the_viewer_shows_an_environment(env: Any, capsys: pytest.CaptureFixture[str]) -> None:
+    import mujoco.viewer
+
+    with mujoco.viewer.launch_passive(env.model, env.data) as viewer:
+        assert viewer.is_running()
+        assert viewer.url in capsys.readouterr().out
+        mujoco.mj_step(env.model, env.data)
+        viewer.sync()
+        with pytest.raises(AttributeError, match="cam: the page of this viewer"):
+            _ = viewer.cam
+    assert not viewer.is_running()
+    with pytest.raises(NotImplementedError, match=r"env\.model and env\.data"):
+        mujoco.viewer.launch_passive(None, None)
+    with pytest.raises(NotImplementedError, match="key_callback"):
+        mujoco.viewer.launch_passive(env.model, env.data, key_callback=print)
