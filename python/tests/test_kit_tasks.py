@@ -20,6 +20,7 @@ from mimoEnv.envs.reach import MIMoReachEnv
 from mimoEnv.envs.selfbody import SITTING_POSITION, TOUCH_PARAMS, MIMoSelfBodyEnv
 from mimoTouch.touch import TrimeshTouch
 
+import babybench
 import mujoco
 
 NAMES: dict[str, Any] = json.loads((Path(__file__).parent / "kit" / "mimo_names.json").read_text(encoding="utf-8"))
@@ -289,3 +290,79 @@ def test_mimo_grows_in_a_copy_of_a_scene(tmp_path: Path) -> None:
         adjust_mimo_to_age(99, scene)
     with pytest.raises(ValueError, match="not deleted"):
         delete_growth_scene(tmp_path / "own.xml")
+
+
+BESIDE = """<mujoco>
+  <option timestep="0.005" gravity="0 0 0"/>
+  <include file="{folder}/mimo/MIMo_meta.xml"/>
+  <worldbody>
+    <body name="mimo_location" pos="0 0 1"><freejoint/><include file="{folder}/mimo/MIMo_model.xml"/></body>
+    <body name="mother" pos="3 0 1">
+      <joint name="robot:mother" axis="0 1 0" range="-90 90"/><geom type="capsule" fromto="0 0 0 0 0 .5" size=".05"/>
+    </body>
+  </worldbody>
+  <actuator><motor name="act:mother" joint="robot:mother" gear="2" ctrlrange="-1 1" forcerange="-1 1"/></actuator>
+</mujoco>"""
+
+
+def test_others_with_mimos_names_are_driven_and_sensed(tmp_path: Path) -> None:
+    path = tmp_path / "mother.xml"
+    path.write_text(BESIDE.format(folder=SCENE_DIRECTORY))
+    env, alone = MIMoDummyEnv(path, **BLIND), made("MIMoBench-v0").unwrapped
+    observation, _ = env.reset(seed=0)
+    assert env.action_space.shape == (45,)
+    # an angle, a velocity, a limit, a control and a torque more
+    assert observation["observation"].shape == (len(alone.reset()[0]["observation"]) + 5,)
+    action = np.zeros(45)
+    action[-1] = 1.0
+    for _ in range(4):
+        observation, *_ = env.step(action)
+    angle = env.data.joint("robot:mother").qpos[0]
+    assert angle > 0.004
+    assert env.proprioception.sensor_outputs["qpos"][-1] == angle
+    assert np.all(env.data.ctrl == action)
+    with pytest.raises(NotImplementedError, match="only SpringDamperModel drives"):
+        MIMoDummyEnv(path, actuation_model=MuscleModel, **BLIND)
+
+
+@pytest.mark.parametrize(("name", "task"), [("Reach", "reach"), ("Standup", "standup"), ("SelfBody", "selfbody")])
+def test_a_task_is_that_of_the_engine_step_by_step(name: str, task: str) -> None:
+    engine, env = babybench.make(task, compat="reference"), made(f"MIMo{name}-v0").unwrapped
+    engine.reset(seed=5)
+    env.reset(seed=5)
+    draws, known = np.random.default_rng(0), engine.unwrapped
+    env.set_state(known.array("qpos"), known.array("qvel"))
+    if name == "Reach":
+        env.target_init_pos = np.array(env.data.body("target").xpos)
+    for _ in range(20):
+        env.set_state(known.array("qpos"), known.array("qvel"))
+        action = draws.uniform(env.action_space.low, env.action_space.high).astype(np.float32)
+        expected, found = engine.step(action), env.step(action)
+        assert np.allclose(found[0]["observation"], expected[0]["observation"], rtol=1e-3, atol=1e-3)
+        assert np.allclose(env.data.qpos, known.array("qpos"), atol=1e-6)
+        assert found[1] == pytest.approx(expected[1], abs=1e-9)
+
+
+def test_senses_and_actuation_have_mimos_attributes() -> None:
+    eyes = {eye: {"width": 8, "height": 8} for eye in ("eye_left", "eye_right")}
+    env, muscles = MIMoDummyEnv(vision_params=eyes), made("MIMoMuscle-v0", touch_params=None).unwrapped
+    env.reset()
+    muscles.reset()
+    known = {
+        name: names
+        for module in NAMES["modules"].values()
+        for name, names in module["classes"].items()
+        if name[:4] != "MIMo"
+    }
+    for part in (
+        env.touch,
+        env.vision,
+        env.vestibular,
+        env.proprioception,
+        env.actuation_model,
+        muscles.actuation_model,
+    ):
+        names = known[type(part).__name__]
+        wanted = [name for name in [*names["attributes"], *names["methods"], *names["properties"]] if name[0] != "_"]
+        uncalled = getattr(type(part), "_uncalled", ())
+        assert [name for name in wanted if not hasattr(part, name) and name not in uncalled] == [], type(part).__name__

@@ -123,7 +123,7 @@ class EngineActuation(ActuationModel):
 
     def get_action_space(self) -> spaces.Box:
         """Returns a new space with the bounds of an action."""
-        low, high = self._core.engine.action_bounds
+        low, high = self._core.engine.action_bounds if self._core.whole else self._own_bounds()
         self.control_input = np.zeros(low.shape)
         return spaces.Box(low=low, high=high, dtype=np.float32)
 
@@ -135,11 +135,22 @@ class EngineActuation(ActuationModel):
             # a number stands for all
             control = np.broadcast_to(control, space.shape)
         self.control_input = control.clip(space.low, space.high)
-        self._core.set_action(self.control_input)
+        if self._core.whole:
+            self._core.set_action(self.control_input)
+        else:
+            self._core.set_controls(self.actuators, self.control_input)
+
+    def _own_bounds(self) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
+        """Returns the bounds where bodies beside MIMo have actuators with his names, which the engine does not drive."""
+        raise NotImplementedError(
+            f"{type(self).__name__}: other bodies than MIMo have actuators named act:..., which only SpringDamperModel drives: "
+            "name them otherwise, or write a subclass of ActuationModel that sets env.data.ctrl"
+        )
 
     def substep_update(self) -> None:
         """Updates the actuators before each physics step of a step but the first."""
-        self._core.substep()
+        if self._core.whole:
+            self._core.substep()
 
     def observations(self) -> Array:
         """Returns what proprioception says of the actuators."""
@@ -170,9 +181,14 @@ class SpringDamperModel(EngineActuation):
         self.max_torque: Array = np.asarray(env._core.blueprint.model_array("actuator_gear"))[actuators]
         self._made()
 
+    def _own_bounds(self) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
+        """Returns the force ranges of the motors."""
+        bounds = np.asarray(self._core.blueprint.model_array("actuator_forcerange"), np.float32)[self.actuators]
+        return bounds[:, 0], bounds[:, 1]
+
     def cost(self) -> float:
         """Returns the cost of the present controls, 0 to 1."""
-        if "max_torque" not in self._replaced:
+        if "max_torque" not in self._replaced and self._core.whole:
             return super().cost()
         return float(abs(self.control_input**2 * self.max_torque).sum() / (self.n_actuators * self.max_torque.sum()))
 

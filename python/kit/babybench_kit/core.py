@@ -47,6 +47,7 @@ class Core:
         assets: The folder of MJCF files and textures; nothing for the embedded ones.
         document: The document, if it is compiled as it stands.
         settled: Whether the engine has let the scene come to rest.
+        whole: Whether the engine drives and senses all that has the names of MIMo's joints and actuators.
         engine: The environment in Rust; ``parts`` are the parts of its reset and step.
         names: Names of all elements, by kind.
         course: What is known of the present instant, and who may write to it.
@@ -84,7 +85,19 @@ class Core:
         self._poses: Poses | None = None
         self._watched: Watched | None = None
         self._live: Live | None = None
-        self.layout = self._proprioception_layout()
+        self.whole = self._is_whole()
+        self.layout = self._proprioception_layout() if self.whole else {}
+
+    def _is_whole(self) -> bool:
+        """Tells whether the engine drives and senses all joints and actuators with MIMo's prefixes: others may have them, too."""
+        motors = sum(name.startswith("act:") for name in self.names["actuator"])
+        torques = 3 * sum(name.startswith("proprio:") for name in self.names["sensor"])
+        per_motor, seen = {"spring_damper": (1, 2), "muscle": (2, 4), "positional": (1, 1)}[
+            self.config["actuation_model"]
+        ]
+        expected = 3 * len(self.mimo_joints) + torques + seen * motors
+        sizes = len(self.engine.action_bounds[0]), len(self.parts.proprioception)
+        return sizes == (per_motor * motors, expected)
 
     def _proprioception_layout(self) -> dict[str, slice]:
         """Returns where each part of proprioception stands: in alphabetical order of their names."""
@@ -146,6 +159,13 @@ class Core:
     def set_action(self, action: Any) -> None:
         """Gives an action to the actuators."""
         self.parts.set_action(action)
+        self._show_controls()
+
+    def set_controls(self, actuators: NDArray[np.int_], controls: Any) -> None:
+        """Gives controls to some of the actuators."""
+        ctrl = self.engine.state_array("ctrl")
+        ctrl[actuators] = controls
+        self.engine.write_state("ctrl", ctrl)
         self._show_controls()
 
     def substep(self) -> None:

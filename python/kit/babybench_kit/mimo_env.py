@@ -178,7 +178,7 @@ class MIMoEnv(SensingEnv):
     def _share_of_the_script(self) -> Share:
         """Returns what of this environment a script has replaced."""
         model = self.actuation_model
-        self._core.plain_actuation = type(model) in MODELS.values() and not model._replaced
+        self._core.plain_actuation = self._core.whole and type(model) in MODELS.values() and not model._replaced
         if not self._observes_plainly():
             return Share.SENSES
         return Share.STEP if replaced(self, _ORIGINAL, _WITHIN_STEP) else Share.NOTHING
@@ -191,7 +191,7 @@ class MIMoEnv(SensingEnv):
         self._set_initial_position(self._initial_qpos)
         self.init_qpos = self._core.read("qpos")
         self.actuation_model: ActuationModel = self._actuation(self, self.mimo_actuators)
-        self._core.plain_actuation = self._actuation in MODELS.values()
+        self._core.plain_actuation = self._core.whole and self._actuation in MODELS.values()
 
     def _compile(self, scene: Scene, actuation_model: type[ActuationModel], config: Mapping[str, Any]) -> Core:
         """Compiles a scene for the senses and the actuation that the arguments ask for."""

@@ -55,6 +55,11 @@ class MuscleParts:
         return np.asarray(self._core.engine.state_array("actuator_target"))
 
     @property
+    def maximum_isometric_forces(self) -> Array:
+        """Returns the largest forces of the two muscles of each actuator as the scene has them, (n, 2)."""
+        return np.asarray(self._core.blueprint.model_array("actuator_user"))[self.actuators, 1:3]
+
+    @property
     def muscle_lengths(self) -> Array:
         """Returns the lengths of the muscles, (2 n,), relative to their optimum."""
         angles = self._core.engine.state_array("qpos")[self.mimo_actuated_qpos] - self._spring

@@ -89,8 +89,10 @@ class SimpleProprioception(Proprioception):
         self.limit_thresh = (proprio_parameters or {}).get("threshold", _THRESHOLD)
         where = env._core.layout
         keys = [key for key, component in _OUTPUTS if not component or component in on]
-        self._parts = _native.Blocks(
-            env._core.engine, False, [(key, where[key].start, where[key].stop) for key in keys]
+        self._parts = (
+            _native.Blocks(env._core.engine, False, [(key, where[key].start, where[key].stop) for key in keys])
+            if where
+            else None
         )
         self._shown = -1
         self._outputs: dict[str, Array] = {}
@@ -98,12 +100,16 @@ class SimpleProprioception(Proprioception):
         self._made()
         if self.limit_thresh != _THRESHOLD:
             self._changed.add("limit_thresh")
+        if not where:
+            self._changed.add("joint_ids")  # more than the engine's
 
     @property
     def sensor_outputs(self) -> dict[str, Array]:
         """Returns the parts of the last output: ``qpos``, ``qvel``, ``torques``, ``limits``, ``actuation``."""
         moment = self._core.observed
-        return self._outputs if self._shown == moment else self._parts.felt(moment)
+        if self._shown != moment and self._parts is None:
+            self.sensor_outputs = self._sensed()
+        return self._outputs if self._parts is None or self._shown == moment else self._parts.felt(moment)
 
     @sensor_outputs.setter
     def sensor_outputs(self, outputs: dict[str, Array]) -> None:

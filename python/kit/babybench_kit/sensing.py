@@ -109,6 +109,7 @@ class SensingEnv(gym.Env):  # type: ignore[type-arg,unused-ignore]
             and (self.vestibular is None or self._core.config["vestibular_active"])
             and components == set(SimpleProprioception.VALID_COMPONENTS)
             and self._core.plain_actuation
+            and self._core.whole
             and not self.goals_in_observation
         )
 
