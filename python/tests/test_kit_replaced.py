@@ -47,7 +47,7 @@ BY_SCRIPTS_ALONE = {
         *("changed", "cost", "set_fmax", "set_vmax", "simulation_torque", "muscle_lengths", "muscle_velocities"),
         *("activity", "target_activity", "joint_torque", "collect_data_for_actuators", "fl", "fv", "fp"),
         *(f"{stem}_{k}" for stem in ("lce", "lce_dot", "force_muscles", "moment") for k in (1, 2)),
-        *("lce_1_ref", "lce_2_ref"),
+        *("lce_1_ref", "lce_2_ref", "maximum_isometric_forces"),
     },
     "Room": {
         *(
