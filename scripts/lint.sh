@@ -2,7 +2,7 @@
 # Checks formats, lints, spelling, shell scripts and licences; also each feature alone and the documentation.
 #   scripts/lint.sh          # everything; the slow Rust checks only if Rust differs from main (scripts/changed.sh)
 #   scripts/lint.sh quick    # formats, lints, spelling, shell scripts, licences
-# Uses the release profile to share build scripts and macros with the tests. Needs Rust, and Python 3.11 with venv.
+# Uses the profile of the tests to share build scripts and macros with the tests. Needs Rust, and Python 3.11 with venv.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 . scripts/steps.sh
@@ -18,7 +18,7 @@ format() {
 }
 lints() {
   component clippy clippy
-  cargo clippy --locked --release --workspace --all-targets --all-features -- -D warnings
+  cargo clippy --locked --profile testing --workspace --all-targets --all-features -- -D warnings
 }
 spelling() {
   python3 -m venv target/tools
@@ -47,10 +47,10 @@ features() {
   check -p mjcf-sim --lib
 }
 check() { # PACKAGES AND TARGETS
-  cargo check --locked --release -p shared-features "$@"
+  cargo check --locked --profile testing -p shared-features "$@"
 }
 documentation() {
-  RUSTDOCFLAGS='-D warnings' cargo doc --locked --release --workspace --no-deps --all-features
+  RUSTDOCFLAGS='-D warnings' cargo doc --locked --profile testing --workspace --no-deps --all-features
 }
 
 step 'format' format

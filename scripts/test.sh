@@ -25,8 +25,8 @@ rust() {
   steps_of rust
   if ! command -v cargo >/dev/null; then lack tests 'there is no cargo: https://rustup.rs'; return; fi
   prepare
-  step 'build' cargo test --locked --workspace --release --all-features --no-run
-  if [ "$step_code" -eq 0 ]; then step 'tests' cargo test --locked --workspace --release --all-features --no-fail-fast; fi
+  step 'build' cargo test --locked --workspace --profile testing --all-features --no-run
+  if [ "$step_code" -eq 0 ]; then step 'tests' cargo test --locked --workspace --profile testing --all-features --no-fail-fast; fi
 }
 
 parts=${*:-rust python web}

@@ -26,7 +26,7 @@ wasm=wasm32-unknown-unknown
 package=web/dist/babybench
 if ! [ -d web/node_modules ]; then npm ci --prefix web --ignore-scripts --no-audit --no-fund; fi
 
-cargo build --locked --release -p babybench-bindgen
+cargo build --locked --profile testing -p babybench-bindgen
 
 # The modules: 128-bit vector instructions are in every browser since 2023 and in node since 16.
 # One after the other: together, each would have the features of both. In that of the environments kernels are inlined because they say so;
@@ -45,7 +45,7 @@ module babybench-onnx "$simd"
 rm -rf "$package"
 mkdir -p "$package"
 bind() { # MODULE NAME: JavaScript beside a module
-  "$target/release/babybench-bindgen" "$target/wasm/$wasm/web/$1.wasm" "$package" "$2"
+  "$target/testing/babybench-bindgen" "$target/wasm/$wasm/web/$1.wasm" "$package" "$2"
 }
 bind babybench_web core
 bind babybench_onnx onnx_core
