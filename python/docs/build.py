@@ -49,6 +49,7 @@ MODULES = (
 )
 LINKS = {
     "(docs/from-the-kit.md)": "(#from-the-starter-kit-to-here)",
+    "(programs.md)": "(#public-programs-on-mimo)",
     "(from-mimo.md)": "(#from-mimo-to-here)",
     "(docs/mujoco.md)": "(#mujocos-names-without-mujoco)",
     "(../README.md)": "(#babybench-for-python)",
@@ -58,7 +59,8 @@ LINKS = {
 def guide() -> str:
     """Returns the README and the guides beside this file as one page of HTML."""
     text = "\n\n".join(
-        (HERE / name).read_text("utf-8") for name in ("../README.md", "mujoco.md", "from-the-kit.md", "from-mimo.md")
+        (HERE / name).read_text("utf-8")
+        for name in ("../README.md", "mujoco.md", "from-the-kit.md", "from-mimo.md", "programs.md")
     )
     for link, here in LINKS.items():
         text = text.replace(link, here)

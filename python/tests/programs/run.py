@@ -1,0 +1,109 @@
+"""Fetches public programs on MIMo and runs them on this package: ``python tests/programs/run.py FOLDER``.
+
+Needs git, the network, and the installed packages babybench, babybench-kit and matplotlib. Programs are fetched into FOLDER at
+the commits of the table, and stay as they are. Their code is not part of this repository. ``python/docs/programs.md`` has
+the results.
+"""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+import time
+from dataclasses import dataclass
+from pathlib import Path
+
+LIMIT = 600
+"""Seconds that a program may take."""
+
+
+@dataclass(frozen=True)
+class Program:
+    """A program of a repository, and what it prints when all is well."""
+
+    repository: str
+    commit: str
+    command: tuple[str, ...]
+    prints: str
+
+
+_TACTILE = ("uchanable/tactile-lm", "b96603d6caa2fe872ccedd9375e71ea5b5df6c7c")
+_MOTHER = ("ctu-vras/mom-for-mimo", "8a0f73a2ef1236b616c5473050d42c709125bc9b")
+_MIMO = ("trieschlab/MIMo", "623c9af9f289ec62c666518b3af1384da5bb3ebb")
+_SCENE = """
+import os, gymnasium, mimoEnv, mom_mimoEnv
+path = os.path.abspath("mom_mimoEnv/assets/{scene}.xml")
+env = gymnasium.make("MIMoAdultRetargeting-v0", model_path=path, vision_params=None)
+env.reset(seed=0)
+env.step(env.action_space.sample())
+print("bodies that follow recordings:", env.unwrapped.model.nmocap)
+"""
+_BENCHMARK = """
+import gymnasium, runpy
+import babybench, mimoEnv
+run = runpy.run_path("mimoEnv/benchmark.py")["run"]
+env = gymnasium.make("MIMoBench-v0", vision_params=None)
+env.reset(seed=0)
+run(env, 20)
+print("ran")
+"""
+PROGRAMS = (
+    Program(*_TACTILE, ("ct_touch/test_ct_touch.py",), "ALL TESTS PASSED"),
+    Program(*_TACTILE, ("som/test_mimo_integration.py",), "All MIMo integration tests passed"),
+    *(
+        Program(*_MOTHER, ("-c", _SCENE.format(scene=scene)), f"bodies that follow recordings: {count}")
+        for scene, count in (("mom1_scene", 34), ("mom_front_scene", 35), ("testing", 0))
+    ),
+    Program(*_MIMO, ("-c", _BENCHMARK), "ran"),
+)
+
+
+def fetch(program: Program, folder: Path) -> Path:
+    """Fetches the commit of a program's repository, unless it is there."""
+    target = folder / program.repository.replace("/", "+")
+    if not (target / ".git").is_dir():
+        target.mkdir(parents=True)
+        address = f"https://github.com/{program.repository}.git"
+        fetch_commit = ("fetch", "-q", "--depth", "1", address, program.commit)
+        for command in (("init", "-q"), fetch_commit, ("checkout", "-q", "FETCH_HEAD")):
+            subprocess.run(["git", "-C", str(target), *command], check=True)
+    return target
+
+
+def run(program: Program, folder: Path) -> tuple[bool, str]:
+    """Runs a program on this package, and tells whether it printed what it should, and its last line."""
+    settings = {"BABYBENCH_MIMO": "babybench", "MPLBACKEND": "Agg", "PYTHONPATH": str(folder)}
+    command = [sys.executable, "-W", "ignore", *program.command]
+    try:
+        done = subprocess.run(
+            command,
+            cwd=folder,
+            env={**os.environ, **settings},
+            capture_output=True,
+            text=True,
+            timeout=LIMIT,
+            check=False,
+        )
+    except subprocess.TimeoutExpired:
+        return False, f"took more than {LIMIT} s"
+    printed = done.stdout + done.stderr
+    lines = [line for line in printed.splitlines() if line.strip("= ")]
+    return done.returncode == 0 and program.prints in printed, lines[-1] if lines else ""
+
+
+def main(folder: Path) -> int:
+    """Runs all programs, and returns how many failed."""
+    failed = 0
+    for program in PROGRAMS:
+        started = time.perf_counter()
+        passed, last = run(program, fetch(program, folder))
+        failed += not passed
+        name = program.command[0] if program.command[0] != "-c" else program.prints
+        seconds, state = time.perf_counter() - started, "ran" if passed else "FAILED"
+        print(f"{state}  {program.repository}: {name} ({seconds:.0f} s)  {last[:100]}", flush=True)
+    return failed
+
+
+if __name__ == "__main__":
+    sys.exit(main(Path(sys.argv[1])))
