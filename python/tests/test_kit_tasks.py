@@ -328,8 +328,11 @@ def test_others_with_mimos_names_are_driven_and_sensed(tmp_path: Path) -> None:
 @pytest.mark.parametrize(("name", "task"), [("Reach", "reach"), ("Standup", "standup"), ("SelfBody", "selfbody")])
 def test_a_task_is_that_of_the_engine_step_by_step(name: str, task: str) -> None:
     engine, env = babybench.make(task, compat="reference"), made(f"MIMo{name}-v0").unwrapped
-    engine.reset(seed=5)
+    start, _ = engine.reset(seed=5)
     env.reset(seed=5)
+    if name == "SelfBody":
+        env.target_geom = int(start["desired_goal"].argmax())
+        env.target_body = env.model.body(int(env.model.geom_bodyid[env.target_geom])).name
     draws, known = np.random.default_rng(0), engine.unwrapped
     env.set_state(known.array("qpos"), known.array("qvel"))
     if name == "Reach":
