@@ -1,7 +1,7 @@
 //! Prints checksums of what environments do, to be compared with those of another target, profile or number of threads.
 //!
 //! ```sh
-//! cargo run --release --example checksum               # episodes of the examples
+//! cargo run --release --example checksum               # episodes of the examples; `babybench doctor` compares with these lines
 //! cargo run --release --example checksum episode 2 100 # in two threads, up to 100 steps
 //! cargo run --release --example checksum variant       # with --features rapier: tasks, actuation models, the other engine, ages; also with threads and steps
 //! cargo run --release --example checksum vector 2      # vectors of environments, stepped by two threads
@@ -20,7 +20,6 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use jobs::{Job, KINDS, Kind};
 
 mod cases;
-mod fold;
 mod jobs;
 mod sums;
 

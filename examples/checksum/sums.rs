@@ -1,11 +1,10 @@
 //! Checksums of what environments do: the same bits on every target.
 
-use babybench::env::{Snapshot, ViewFrom, Viewer};
+use babybench::env::{Checksum, Snapshot, ViewFrom, Viewer};
 use babybench::render::ImageBuffers;
 use babybench::{Env, VectorEnv, VectorOptions};
 
 use crate::cases::{Case, blueprint};
-use crate::fold::{self, Hash};
 
 /// A checksum, or the reason for its absence.
 pub type Sum = Result<u64, Box<dyn std::error::Error>>;
@@ -13,12 +12,12 @@ pub type Sum = Result<u64, Box<dyn std::error::Error>>;
 /// Runs a case for some random steps from seed 0, with a new episode where one ends, and returns what it folded on the way: rewards, and
 /// how episodes end.
 fn walk(env: &mut Env, steps: usize) -> Sum {
-    let (mut action, mut hash) = (Vec::new(), Hash::new());
+    let (mut action, mut hash) = (Vec::new(), Checksum::default());
     for _ in 0..steps {
         env.sample_action(&mut action);
         let step = env.step(&action)?;
         let (over, reward) = (step.terminated || step.truncated, step.reward);
-        hash.fold(reward.to_bits() ^ u64::from(step.terminated));
+        hash.add(reward.to_bits() ^ u64::from(step.terminated));
         if over {
             env.reset(None)?;
         }
@@ -42,15 +41,15 @@ pub fn episode(case: Case, steps: usize, threads: usize) -> Sum {
         env.sample_action(&mut action);
         env.step(&action)?;
     }
-    Ok(fold::bits(&env))
+    Ok(Checksum::of(&env).0)
 }
 
 /// Returns rewards, ends of episodes and the last senses of random steps from seed 0.
 pub fn variant(case: Case, steps: usize, threads: usize) -> Sum {
     let mut env = seeing(case, threads)?;
     env.reset(Some(0))?;
-    let mut hash = Hash(walk(&mut env, steps)?);
-    hash.fold(fold::bits(&env));
+    let mut hash = Checksum(walk(&mut env, steps)?);
+    hash.add(Checksum::of(&env).0);
     Ok(hash.0)
 }
 
@@ -68,7 +67,7 @@ pub fn vector(case: Case, steps: usize, threads: usize) -> Sum {
         ..VectorOptions::default()
     };
     let mut envs = VectorEnv::new(&blueprint, ENVS, options)?;
-    let mut hashes: [Hash; ENVS] = std::array::from_fn(|_| Hash::new());
+    let mut hashes: [Checksum; ENVS] = std::array::from_fn(|_| Checksum::default());
     let mut actions = Vec::new();
     envs.reset(0)?;
     for step in 0..steps {
@@ -86,13 +85,13 @@ pub fn vector(case: Case, steps: usize, threads: usize) -> Sum {
                 _ => envs.recv(size)?,
             };
             for (row, &env) in batch.ids.iter().enumerate() {
-                hashes[env].observation(&batch.row(row).ok_or("the batch is too short")?);
-                hashes[env].fold(u64::from(batch.truncated[row]) + batch.infos.steps[row]);
+                hashes[env].add_observation(&batch.row(row).ok_or("the batch is too short")?);
+                hashes[env].add(u64::from(batch.truncated[row]) + batch.infos.steps[row]);
             }
         }
     }
-    let mut all = Hash::new();
-    hashes.iter().for_each(|hash| all.fold(hash.0));
+    let mut all = Checksum::default();
+    hashes.iter().for_each(|hash| all.add(hash.0));
     Ok(all.0)
 }
 
@@ -110,11 +109,11 @@ pub fn snapshot(case: Case) -> Result<Vec<u8>, Box<dyn std::error::Error>> {
 /// Restores the bytes of a snapshot in a new environment and continues. Returns the bytes and what follows.
 pub fn restored(case: Case, bytes: Vec<u8>) -> Sum {
     let mut env = blueprint(case, |config| config)?.env()?;
-    let mut hash = Hash::new();
-    hash.bytes(&bytes);
+    let mut hash = Checksum::default();
+    hash.add_bytes(&bytes);
     env.restore(&Snapshot::from_bytes(bytes)?)?;
-    hash.fold(walk(&mut env, SNAPSHOT_STEPS[1])?);
-    hash.fold(fold::bits(&env));
+    hash.add(walk(&mut env, SNAPSHOT_STEPS[1])?);
+    hash.add(Checksum::of(&env).0);
     Ok(hash.0)
 }
 
@@ -123,10 +122,10 @@ pub fn pictures(case: Case) -> Sum {
     let blueprint = blueprint(case, |config| config)?;
     let mut env = blueprint.env()?;
     env.reset(Some(0))?;
-    let mut hash = Hash(walk(&mut env, 5)?);
+    let mut hash = Checksum(walk(&mut env, 5)?);
     let mut viewer = Viewer::new(&blueprint)?;
     for camera in ["corner", "closeup", "top"] {
-        hash.bytes(viewer.draw(&env, ViewFrom::room(&env, camera), 160, 120)?);
+        hash.add_bytes(viewer.draw(&env, ViewFrom::room(&env, camera), 160, 120)?);
     }
     if env.config().vision_active {
         let pixels = (env.config().vision_resolution as usize).pow(2);
@@ -145,9 +144,9 @@ pub fn pictures(case: Case) -> Sum {
             })
         };
         env.senses_mut().eye_buffers([eye()?, eye()?])?;
-        rgb.iter().chain(&gray).for_each(|image| hash.bytes(image));
-        depth.iter().for_each(|image| hash.values(image.as_slice().into()));
-        geoms.iter().for_each(|image| hash.values(image.as_slice().into()));
+        rgb.iter().chain(&gray).for_each(|image| hash.add_bytes(image));
+        depth.iter().for_each(|image| hash.add_values(image.as_slice().into()));
+        geoms.iter().for_each(|image| hash.add_values(image.as_slice().into()));
     }
     Ok(hash.0)
 }

@@ -5,7 +5,6 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 use jobs::{Job, KINDS, Kind};
 
 mod cases;
-mod fold;
 mod jobs;
 mod sums;
 

@@ -11,7 +11,7 @@ import sys
 from collections.abc import Sequence
 from typing import Optional
 
-from babybench_core import _native, starter_kit
+from babybench_core import _native, doctor, starter_kit
 
 _SCRIPTS = """
 figures RESULTS ... --out DIR draws figures for papers of runs, records and benchmarks.
@@ -74,6 +74,8 @@ def main(arguments: Optional[Sequence[str]] = None) -> None:
         command = importlib.import_module(f"babybench_core.{given[0]}.command")
         command.main(given[1:], program)
         return
+    if given[:1] == ["doctor"] and not {"-h", "--help"} & set(given):
+        doctor.main()
     if signal.getsignal(signal.SIGINT) is signal.default_int_handler:
         # commands save what they have when they are interrupted
         signal.signal(signal.SIGINT, signal.SIG_DFL)

@@ -22,6 +22,7 @@ COMMANDS = (
     "view",
     "senses",
     "test-installation",
+    "doctor",
     "train",
     "score",
     "report",
@@ -84,6 +85,19 @@ def test_a_policy_that_is_an_onnx_model_is_evaluated(folder: Path) -> None:
     done = call(folder, "evaluate", *arguments)
     assert done.returncode == 0, done.stderr
     assert done.stdout.count('"is_success"') == 3, done.stdout
+
+
+def test_the_doctor_describes_python_and_the_machine_and_compares_bits(folder: Path) -> None:
+    done = call(folder, "doctor")
+    assert done.returncode == 0, done.stdout + done.stderr
+    lines = dict(line.split(maxsplit=1) for line in done.stdout.splitlines())
+    assert lines["python"].startswith(sys.version.split()[0])
+    assert {"numpy", "gymnasium", "mujoco", "babybench", "system", "processor", "threads", "adapter"} <= set(lines)
+    assert "of 12 checksums" in lines["self-check"], lines["self-check"]
+    done = call(folder, "doctor", "--no-check")
+    assert done.returncode == 0
+    assert "self-check" not in done.stdout
+    assert call(folder, "doctor", "--no-checks").returncode == 2
 
 
 def test_a_model_is_simulated(folder: Path) -> None:

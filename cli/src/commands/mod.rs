@@ -2,6 +2,7 @@
 
 mod benchmark;
 mod body;
+mod doctor;
 mod evaluate;
 mod inspect;
 mod keys;
@@ -71,6 +72,8 @@ pub enum Command {
     Senses(senses::Senses),
     /// Check that everything works on this machine, and write a scene, a log and a short video
     TestInstallation(test_installation::TestInstallation),
+    /// Print versions, processor, adapters, threads and optional parts, and check in seconds that results are the tested ones
+    Doctor(doctor::Doctor),
     /// Train with the random policy: log episodes with random actions in the configuration's save_dir
     Train(train::Train),
     /// Print the score of a training log and its parts
@@ -223,6 +226,7 @@ impl Command {
             Self::Measure(c) => c.run(),
             Self::Senses(c) => c.run(),
             Self::TestInstallation(c) => c.run(),
+            Self::Doctor(c) => c.run(),
             Self::Train(c) => c.run(),
             Self::Score(c) => c.run(),
             Self::Report(c) => c.run(),

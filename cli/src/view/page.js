@@ -48,7 +48,7 @@ async function ask() {
   picture.close();
 }
 
-/** Asks for one picture after the other; less often while nothing moves, and never while nobody looks. */
+/** Asks for one picture after the other: less often while nothing moves, and not while the page is hidden. */
 async function live() {
   for (;;) {
     await new Promise(requestAnimationFrame);
@@ -101,7 +101,7 @@ function show(next, picture) {
   settle(next);
 }
 
-/** Brings the buttons up to what the program says: another page may have changed it. */
+/** Updates the buttons to the program's state, which another page may have changed. */
 function settle(next) {
   const first = !said;
   said = next;
@@ -157,7 +157,7 @@ addEventListener("keydown", (event) => {
 const down = new Map();
 let pulls = false;
 
-/** The place of an event in the picture, in parts of its width and height. */
+/** The place of an event in the picture, as fractions of its width and height. */
 function place(event) {
   const box = canvas.getBoundingClientRect();
   return [(event.clientX - box.left) / box.width, (event.clientY - box.top) / box.height];

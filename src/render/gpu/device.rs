@@ -196,6 +196,14 @@ fn enumerated(instance: &wgpu::Instance, backends: wgpu::Backends) -> Vec<wgpu::
     found.clone()
 }
 
+/// Describes the adapters of this machine, the best first.
+#[cfg(not(target_arch = "wasm32"))]
+pub fn descriptions() -> Vec<String> {
+    let (instance, backends) = instance();
+    let found = pollster::block_on(adapters(&instance, backends, None));
+    found.iter().map(|adapter| describe(&adapter.get_info())).collect()
+}
+
 /// Ranks an adapter: the lower the better.
 fn rank(kind: wgpu::DeviceType, backend: wgpu::Backend) -> (u8, u8) {
     use wgpu::{Backend, DeviceType};

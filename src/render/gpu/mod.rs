@@ -81,6 +81,13 @@ pub struct GpuRenderer {
     submissions: u64,
 }
 
+/// Describes the adapters of this machine, the best first, as [`GpuRenderer::adapter`] does. OpenGL is looked for only if nothing else
+/// finds a GPU; `WGPU_BACKEND` narrows the search.
+#[cfg(not(target_arch = "wasm32"))]
+pub fn adapters() -> Vec<String> {
+    device::descriptions()
+}
+
 impl GpuRenderer {
     /// Opens the best adapter of this machine: a GPU before software, OpenGL last among equals. `WGPU_BACKEND` (vulkan,
     /// gl, metal, dx12) and `WGPU_ADAPTER_NAME` (a part of it) narrow the choice.

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use babybench::Env;
 use babybench::config::{FacialExpression, Part};
-use babybench::env::{Snapshot, ViewFrom, Viewer, draw_eyes};
+use babybench::env::{Checksum, Snapshot, ViewFrom, Viewer, draw_eyes};
 use babybench::mimo::{LockReport, LockTarget, lock_of};
 use babybench::model::JointType;
 use babybench::render::{FreeCamera, Scenery};
@@ -13,7 +13,6 @@ use babybench::sensors::{ObservationEntry, Touch};
 use babybench::spaces::Values;
 use wasm_bindgen::prelude::*;
 
-use crate::fold;
 use crate::frame::Frame;
 use crate::js::{self, id, ids, list, object, optional};
 use crate::numbers::{of_state, place};
@@ -315,7 +314,7 @@ impl Core {
         state.apply_force(body, force, torque, point).map_err(js::error)
     }
 
-    /// Takes off all forces on bodies.
+    /// Removes all applied forces.
     #[wasm_bindgen(js_name = releaseForces)]
     pub fn release_forces(&mut self) {
         self.env.state_mut().release_forces();
@@ -374,7 +373,7 @@ impl Core {
 
     /// Returns the checksum of positions, velocities and senses, as `examples/checksum` prints it.
     pub fn checksum(&self) -> String {
-        format!("{:016x}", fold::bits(&self.env))
+        Checksum::of(&self.env).to_string()
     }
 
     /// Returns the simulated time, s.

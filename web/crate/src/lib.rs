@@ -4,8 +4,6 @@
 
 mod env;
 mod faces;
-#[path = "../../../examples/checksum/fold.rs"]
-mod fold;
 mod frame;
 mod js;
 mod keys;
