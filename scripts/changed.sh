@@ -23,6 +23,7 @@ while read -r file; do
     conformance/* | tests/* | testkit/* | benches/* | examples/*) concerns=rust ;;
     .github/* | CHANGELOG.md | changes/* | towncrier.toml | CODE_OF_CONDUCT.md | CONTRIBUTING.md | SECURITY.md | LICENSE-* | NOTICE | _typos.toml | deny.toml)
       concerns='' ;;
+    docs/tutorials/* | docs/guide/surprises.md | docs/guide/known-faults.md) concerns='rust python web' ;; # their programs run
     docs/* | *.md) concerns=rust ;; # programs in the README run, the guide's tables are compared
     *) concerns=$every ;;
   esac

@@ -58,6 +58,8 @@ if python3 -c 'import ensurepip, venv' 2>/dev/null || scripts/install.sh python3
   step 'spelling' spelling
   step 'shell' shell
   step 'Markdown' scripts/markdown.sh
+  step 'figures' scripts/figures.py
+  if [ "${1:-}" != quick ]; then step 'book' scripts/site.sh quick; fi
 else
   lack 'spelling' 'there is no Python 3 with venv (Debian, Ubuntu: apt install python3-venv)'
 fi

@@ -102,7 +102,7 @@ def duck_body(x, y, z):
 
 
 def duck_beak(x, y, z):
-    """Flat, wider in front."""
+    """Flattens the beak and widens its tip."""
     return 8 * x, (6 + 1.5 * x) * y, (3 - 0.8 * x) * z
 
 

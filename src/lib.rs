@@ -151,3 +151,14 @@ struct Readme;
 #[cfg(all(doctest, feature = "rapier"))]
 #[doc = include_str!("../docs/guide/rust.md")]
 struct Guide;
+
+/// And those in the tutorials.
+#[cfg(doctest)]
+mod tutorials {
+    #[doc = include_str!("../docs/tutorials/own-task.md")]
+    struct OwnTask;
+    #[doc = include_str!("../docs/tutorials/engine.md")]
+    struct Engine;
+    #[doc = include_str!("../docs/guide/known-faults.md")]
+    struct KnownFaults;
+}

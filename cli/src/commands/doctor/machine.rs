@@ -111,8 +111,8 @@ fn memory() -> Option<String> {
 
 /// Returns the value of the first line `KEY SEPARATOR VALUE`.
 fn value_of(text: &str, key: &str, separator: char) -> Option<String> {
-    let pairs = text.lines().filter_map(|line| line.split_once(separator));
-    let found = pairs.into_iter().find(|(name, _)| name.trim() == key)?;
+    let mut pairs = text.lines().filter_map(|line| line.split_once(separator));
+    let found = pairs.find(|(name, _)| name.trim() == key)?;
     Some(found.1.trim().to_owned())
 }
 
