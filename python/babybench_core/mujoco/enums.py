@@ -395,7 +395,7 @@ class mjtRndFlag(enum.IntEnum):
 
 
 class mjtVisFlag(enum.IntEnum):
-    """Flags of what is shown."""
+    """Flags of what a picture shows."""
 
     mjVIS_CONVEXHULL = 0
     mjVIS_TEXTURE = 1

@@ -137,7 +137,7 @@ def mj_kinematics(m: MjModel, d: MjData) -> None:
 
 
 def mj_comPos(m: MjModel, d: MjData) -> None:
-    """Computes what is about the centres of mass: ``subtree_com``, ``cinert``, ``cdof``."""
+    """Computes quantities about the centres of mass: ``subtree_com``, ``cinert``, ``cdof``."""
     check(m, d)
     d._compute("com")
 
@@ -294,18 +294,23 @@ def mj_objectVelocity(m: MjModel, d: MjData, objtype: int, objid: int, res: _Flo
     mju_transformSpatial(res, d.cvel[body], 0, positions[objid], d.subtree_com[m.body_rootid[body]], axes)
 
 
-def _joints(m: MjModel) -> list[tuple[bool, int, int]]:
-    """Returns of each joint whether it is free, and where its positions and velocities start."""
-    return [(int(t) == 0, int(q), int(v)) for t, q, v in zip(m.jnt_type, m.jnt_qposadr, m.jnt_dofadr)]
+_FREE, _BALL = 0, 1
+
+
+def _joints(m: MjModel) -> list[tuple[int, int, int]]:
+    """Returns the type of each joint, and where its positions and velocities start."""
+    return [(int(t), int(q), int(v)) for t, q, v in zip(m.jnt_type, m.jnt_qposadr, m.jnt_dofadr)]
 
 
 def mj_integratePos(m: MjModel, qpos: _Floats, qvel: ArrayLike, dt: float) -> None:
     """Advances positions (nq) with velocities (nv) for some time, s."""
     velocity = np.asarray(qvel, np.float64)
-    for free, q, v in _joints(m):
-        if free:
+    for kind, q, v in _joints(m):
+        if kind == _FREE:
             qpos[q : q + 3] += dt * velocity[v : v + 3]
             mju_quatIntegrate(qpos[q + 3 : q + 7], velocity[v + 3 : v + 6], dt)
+        elif kind == _BALL:
+            mju_quatIntegrate(qpos[q : q + 4], velocity[v : v + 3], dt)
         else:
             qpos[q] += dt * velocity[v]
 
@@ -313,20 +318,24 @@ def mj_integratePos(m: MjModel, qpos: _Floats, qvel: ArrayLike, dt: float) -> No
 def mj_differentiatePos(m: MjModel, qvel: _Floats, dt: float, qpos1: ArrayLike, qpos2: ArrayLike) -> None:
     """Computes the velocities (nv) that lead from one position to another in a given time, s."""
     first, second = np.asarray(qpos1, np.float64), np.asarray(qpos2, np.float64)
-    for free, q, v in _joints(m):
-        if free:
+    for kind, q, v in _joints(m):
+        if kind == _FREE:
             qvel[v : v + 3] = (second[q : q + 3] - first[q : q + 3]) / dt
             mju_subQuat(qvel[v + 3 : v + 6], second[q + 3 : q + 7], first[q + 3 : q + 7])
             qvel[v + 3 : v + 6] /= dt
+        elif kind == _BALL:
+            mju_subQuat(qvel[v : v + 3], second[q : q + 4], first[q : q + 4])
+            qvel[v : v + 3] /= dt
         else:
             qvel[v] = (second[q] - first[q]) / dt
 
 
 def mj_normalizeQuat(m: MjModel, qpos: _Floats) -> None:
     """Makes the quaternions in positions (nq) unit ones."""
-    for free, q, _ in _joints(m):
-        if free:
-            mju_normalize(qpos[q + 3 : q + 7])
+    for kind, q, _ in _joints(m):
+        if kind in (_FREE, _BALL):
+            start = q + 3 if kind == _FREE else q
+            mju_normalize(qpos[start : start + 4])
 
 
 _STATE = (

@@ -62,7 +62,7 @@ def install() -> ModuleType:
 
 
 def uninstall() -> None:
-    """Takes :func:`install` back for imports that are still to come; modules that have imported ``mujoco`` keep what they have.
+    """Reverts :func:`install` for later imports. Modules that have imported ``mujoco`` keep it.
 
     Raises:
         RuntimeError: Gymnasium's environments were imported meanwhile: they would mix both.

@@ -137,10 +137,11 @@ def mj_jacDot(m: MjModel, d: MjData, jacp: _Out, jacr: _Out, point: ArrayLike, b
     dofs = chain(m, int(body))
     offset = np.asarray(point, np.float64).reshape(3) - d.subtree_com[m.body_rootid[body]]
     axes, rates = d.cdof[dofs], d.cdof_dot[dofs].copy()
-    # the axes of a free joint's rotation turn with the whole body
+    # the axes of the rotation of a free or ball joint turn with the whole body
     joints = m.dof_jntid[dofs]
-    free = (m.jnt_type[joints] == 0) & (dofs >= m.jnt_dofadr[joints] + 3)
-    for k in np.flatnonzero(free):
+    kinds = m.jnt_type[joints]
+    turning = (kinds == 0) & (dofs >= m.jnt_dofadr[joints] + 3) | (kinds == 1)
+    for k in np.flatnonzero(turning):
         moving, axis = d.cvel[m.dof_bodyid[dofs[k]]], axes[k]
         rates[k, :3] = np.cross(moving[:3], axis[:3])
         rates[k, 3:] = np.cross(moving[:3], axis[3:]) + np.cross(moving[3:], axis[:3])
@@ -151,7 +152,7 @@ def mj_jacDot(m: MjModel, d: MjData, jacp: _Out, jacr: _Out, point: ArrayLike, b
 def mj_applyFT(
     m: MjModel, d: MjData, force: ArrayLike, torque: ArrayLike, point: ArrayLike, body: int, qfrc_target: _Floats
 ) -> None:
-    """Adds to generalised forces (nv) what a force and a torque on a body do that act at a point, all world, N, N m and m."""
+    """Adds the effect of a force and a torque at a point of a body (world frame, N, N m, m) to generalised forces (nv)."""
     check(m, d)
     dofs, translation, rotation = _columns(m, d, point, body)
     qfrc_target[dofs] += translation @ np.asarray(force, np.float64).reshape(3)
