@@ -9,7 +9,7 @@ Example:
 
 :func:`make` and :class:`Env` are one environment, :class:`VectorEnv` is many, ``babybench.sb3`` is many for
 Stable-Baselines3, ``babybench.pettingzoo`` is two infants in one room, :class:`ActionNoise` moves them at random,
-:func:`view` shows them in a browser or a notebook.
+:func:`view` shows them in a browser or a notebook, and :func:`film` makes a recording for notebooks.
 Importing the package tells Gymnasium the names ``babybench/SelfTouch-v0``,
 ``babybench/HandRegard-v0``, ``babybench/Installation-v0`` and, of tasks with a reward, ``babybench/Reach-v0``,
 ``babybench/Standup-v0``, ``babybench/SelfBody-v0``, ``babybench/Catch-v0``, ``babybench/RollOver-v0``,
@@ -28,6 +28,7 @@ from babybench_core.starter_kit import claim as _claim
 
 if TYPE_CHECKING:
     from babybench_core.env import Env, make
+    from babybench_core.film import Film, film
     from babybench_core.noise import ActionNoise
     from babybench_core.scenes import read_config
     from babybench_core.vector import VectorEnv
@@ -36,11 +37,13 @@ if TYPE_CHECKING:
 __all__ = [
     "ActionNoise",
     "Env",
+    "Film",
     "VectorEnv",
     "View",
     "__version__",
     "config_examples",
     "config_keys",
+    "film",
     "make",
     "read_config",
     "view",
@@ -51,8 +54,10 @@ __path__ = _extended(__path__)
 _HOMES = {
     "ActionNoise": "babybench_core.noise",
     "Env": "babybench_core.env",
+    "Film": "babybench_core.film",
     "data": "babybench.data",
     "figures": "babybench.figures",
+    "film": "babybench_core.film",
     "VectorEnv": "babybench_core.vector",
     "View": "babybench_core.view",
     "make": "babybench_core.env",

@@ -23,12 +23,32 @@ Policy = Union[None, str, ActionNoise, Callable[[Mapping[str, Any]], npt.ArrayLi
 """A source of actions: nothing, a noise or its name, or a function of the observation."""
 
 
+def chooser(env: Env, policy: Policy) -> Callable[[Mapping[str, Any]], npt.ArrayLike]:
+    """Returns a policy as a function of the observation.
+
+    Raises:
+        TypeError: This is no policy.
+    """
+    if isinstance(policy, str):
+        policy = ActionNoise(policy, env)
+    if isinstance(policy, ActionNoise):
+        noise = policy
+        return lambda _: noise()
+    if policy is None:
+        still = np.zeros(env.action_space.shape, np.float32)
+        return lambda _: still
+    if not callable(policy):
+        raise TypeError(f"expected a function of the observation, a noise or its name, got {type(policy).__name__}")
+    return policy
+
+
 class View:
     """A page on which people see an environment, turn the camera, pull bodies by a spring, stop time and hurry it.
 
     A program either steps the environment itself and calls :meth:`show` after each step, or lets :meth:`play` or :meth:`start` do
     both. Pictures are drawn when a browser asks for one; a view without an open page draws nothing. In a notebook a view
-    that ends a cell is an ``<iframe>``.
+    that ends a cell is an ``<iframe>``, which needs a browser that reaches the machine of the kernel;
+    :func:`babybench.film` makes a recording that plays anywhere.
 
     Example:
         >>> import babybench
@@ -104,7 +124,7 @@ class View:
             episodes: The number of episodes; by default it goes on.
         """
         try:
-            self._play(self._chooser(policy), episodes)
+            self._play(chooser(self._inside, policy), episodes)
         except KeyboardInterrupt:
             if episodes is not None:
                 raise
@@ -116,7 +136,7 @@ class View:
         """
         self.stop()
         self._stop.clear()
-        choose = self._chooser(policy)
+        choose = chooser(self._inside, policy)
         self._thread = threading.Thread(target=self._run, args=(choose,), name="babybench view", daemon=True)
         self._thread.start()
         return self
@@ -168,24 +188,18 @@ class View:
                 observation, _ = self.env.reset()
                 self._native.restarted(core)
 
-    def _chooser(self, policy: Policy) -> Callable[[Mapping[str, Any]], npt.ArrayLike]:
-        if isinstance(policy, str):
-            policy = ActionNoise(policy, self._inside)
-        if isinstance(policy, ActionNoise):
-            noise = policy
-            return lambda _: noise()
-        if policy is None:
-            still = np.zeros(self._inside.action_space.shape, np.float32)
-            return lambda _: still
-        if not callable(policy):
-            raise TypeError(f"expected a function of the observation, a noise or its name, got {type(policy).__name__}")
-        return policy
-
     def _repr_html_(self) -> str:
         """Returns the page in a frame, for notebooks."""
         url = html.escape(self.url, quote=True)
         style = f"width:100%;height:{int(self._height)}px;border:0;border-radius:8px"
-        return f'<iframe src="{url}" title="BabyBench" style="{style}"></iframe>'
+        note = (
+            "<small>Nothing above? Then this browser does not reach the machine of the kernel: "
+            f'forward port {self._port()}, or show a recording with <code>babybench.film("self_touch", "held")</code>.</small>'
+        )
+        return f'<iframe src="{url}" title="BabyBench" style="{style}"></iframe><br>{note}'
+
+    def _port(self) -> str:
+        return self.url.split("/")[2].rpartition(":")[2]
 
     def __repr__(self) -> str:
         return f"<babybench.View of {self._inside!r} at {self.url}>"
