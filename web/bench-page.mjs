@@ -40,7 +40,7 @@ const visits = async (title, url, line) => {
 };
 
 /**
- * Stands in front of a server as a line does that all connections share; a connection takes one way there and back before it carries anything.
+ * Simulates a network line in front of a server: all connections share its rate, and each waits one round trip before it carries data.
  * @param {string} url
  * @param {number} rate Bytes per second.
  * @param {number} delay Milliseconds there and back.

@@ -35,7 +35,7 @@ def make(kit, task):
 
 
 def spent(env, steps):
-    """Returns the CPU time of random steps, s; what starts an episode anew is not counted."""
+    """Returns the CPU time of random steps without resets, s."""
     actions = [env.action_space.sample() for _ in range(steps)]
     total = 0.0
     for action in actions:

@@ -220,7 +220,7 @@ def paint_nose(rgb, u, v):
 
 
 def open_mouth(rgb, u, v, lips, tongue=None, teeth=()):
-    """A mouth with its lip line, what is in it clipped to it."""
+    """A mouth with its lip line, clipped to the mouth."""
     mouth = blob(u, v, lips)
     rgb = fill(rgb, LINE, inside(mouth - 0.7, 0.3))
     within = inside(mouth, 0.3)

@@ -1,4 +1,4 @@
-"""Packs recordings of the reference for the repository: what tests read, nothing twice, deflated as far as it goes.
+"""Packs recordings of the reference for the repository: only what tests read, without duplicates, compressed.
 
     pip install numpy zopfli
     python conformance/scripts/pack_recordings.py RECORDED conformance/data
@@ -32,7 +32,7 @@ def deflated(data):
 
 
 def write_npz(path, arrays):
-    """Writes a zip container of deflated members; `zipfile` cannot be handed what is compressed already."""
+    """Writes a zip container of compressed members, which `zipfile` cannot do."""
     central, offset = b"", 0
     with open(path, "wb") as out:
         for name, array in arrays.items():
@@ -61,7 +61,7 @@ def column(array, k):
 
 
 def without_copies(arrays):
-    """Replaces `observation` by its own columns and the places of the others."""
+    """Replaces `observation` by its own columns and the indices of the others."""
     observation = arrays.pop("observation")
     places = {}
     for source, name in list(enumerate(SOURCES))[1:]:

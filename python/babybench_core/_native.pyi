@@ -119,7 +119,7 @@ class Folder:
     """A folder that belongs to this process as long as the object lives."""
 
     def __new__(cls, folder: str | os.PathLike[str]) -> Folder:
-        """Takes possession of the folder; an ``OSError`` names the process that has it."""
+        """Locks the folder; an ``OSError`` names the process that holds it."""
 
 @final
 class Blueprint:
@@ -271,7 +271,7 @@ class Env:
     def apply_force(self, body: int, force: Sequence[float], point: Sequence[float]) -> None:
         """Adds a force (N, world) on a body at a point (m, world); it acts until :meth:`release_forces` or a reset."""
     def release_forces(self) -> None:
-        """Takes off all forces on bodies."""
+        """Removes all applied forces."""
     def contacts(self) -> dict[str, _Array]:
         """Returns the contacts of the start of the last physics step, in MuJoCo's order.
 
@@ -331,7 +331,7 @@ class Env:
     def depth(self, camera: _Camera, width: int, height: int) -> npt.NDArray[np.float32]:
         """Draws the distance from the camera's plane, (height, width), m; infinite where nothing is."""
     def segmentation(self, camera: _Camera, width: int, height: int) -> npt.NDArray[np.int32]:
-        """Draws the ids of geoms, (height, width); -1 where none is."""
+        """Draws the ids of geoms, (height, width); -1 in the background."""
 
 @final
 class ActionNoise:
@@ -373,7 +373,7 @@ class Watch:
     """Arrays that a program may write to, and what was in them."""
 
     def __new__(cls, arrays: Sequence[_Floats]) -> Watch:
-        """Remembers what is in the arrays."""
+        """Stores the contents of the arrays."""
     def changed(self, arrays: Sequence[_Floats]) -> list[int]:
         """Returns the numbers of those that differ, of the same arrays in the same order; the next call compares with these."""
 
@@ -420,7 +420,7 @@ class PhysicsData:
         """Creates a state without computed quantities."""
     @property
     def memory(self) -> _Floats:
-        """The memory of all arrays: what is written into the group ``input`` is what the next computation starts from."""
+        """The memory of all arrays. The next computation starts from the arrays of the group ``input``."""
     @property
     def eq_active(self) -> npt.NDArray[np.uint8]:
         """The active equality constraints."""
@@ -623,9 +623,9 @@ class Parts:
     def observe(self) -> None:
         """Senses the current state."""
     def track(self) -> None:
-        """Counts what the behavior counts."""
+        """Updates the counters of the behavior."""
     def clear_info(self) -> None:
-        """Clears what the behavior has counted."""
+        """Resets the counters of the behavior."""
     def touches(self, right: int, left: int) -> tuple[list[int], list[int]] | None:
         """Returns the geoms that each palm has touched, beyond the first ``right`` and ``left`` ones."""
     @property
@@ -650,7 +650,7 @@ class Parts:
     def touch(self) -> npt.NDArray[np.float32] | None:
         """Returns the touch of the last observation, (n,), N."""
     def fill(self, arrays: Sequence[_Floats]) -> None:
-        """Writes what is known of the state into arrays of the same lengths, in the order of ``FILLED``."""
+        """Copies the state into arrays of the same lengths, in the order of ``FILLED``."""
     def fill_start(self, eq_active: npt.NDArray[np.uint8], position: Sequence[_Floats]) -> None:
         """Writes which equality constraints hold now, and positions and velocities at the start of the last physics step."""
     def fill_position(self, position: Sequence[_Floats]) -> None:
@@ -666,9 +666,9 @@ class Blocks:
     """The last values of a sense, as arrays by key: touch (sensors, 1 or 3), N, or parts of the proprioception."""
 
     def __new__(cls, env: Env, touch: bool, blocks: Sequence[tuple[Any, int, int]]) -> Blocks:
-        """Takes keys, each with its first sensor or number and the one after its last."""
+        """Takes keys, each with a range of sensors or numbers (first, end)."""
     def felt(self, moment: int) -> dict[Any, _Array]:
-        """Returns what was felt last; the same arrays while ``moment`` stays the same."""
+        """Returns the latest values. The arrays stay the same until ``moment`` changes."""
 
 def scene_file(
     config: Mapping[str, Any] | str | os.PathLike[str], assets: str | os.PathLike[str] | None = None

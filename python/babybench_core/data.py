@@ -122,7 +122,7 @@ class Episode(Mapping[str, np.ndarray]):
         return slice(int(ends[at]), int(ends[at + 1]))
 
     def touch(self, step: int) -> np.ndarray:
-        """Returns what the skin felt in a step, N, as the observation had it, shape (touch_len,)."""
+        """Returns the touch observation of a step, N, shape (touch_len,)."""
         out = np.zeros(int(self["touch_len"]), np.float32)
         span = self._span("touch_ptr", step)
         out[self["touch_idx"][span]] = self["touch_val"][span]
@@ -270,7 +270,7 @@ class Record(Exports, Mapping[int, Episode]):
         return Env(self.manifest["configuration"], **keys)
 
     def repeat(self, episode: int) -> Iterator[tuple[Any, float, bool, bool, dict[str, Any]]]:
-        """Repeats an episode, and hands over everything that was observed, whatever of it was recorded.
+        """Repeats an episode and yields all observations, whether they were recorded or not.
 
         Yields:
             First the observation at the start with reward 0, then what each step returned, with the same bits; the arrays
@@ -400,7 +400,7 @@ class Recorder:
 
 
 def _rescue(native: Any, env: Any, folder: str) -> None:
-    """Writes what was recorded of an episode that nobody has ended."""
+    """Writes the record of an episode that was not ended."""
     if not env._core.closed and native.end(env._core, unfinished=True):
         warnings.warn(
             f"a Recorder was given up in the middle of an episode: its steps are kept in {folder}, marked as unfinished; "

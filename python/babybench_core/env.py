@@ -164,7 +164,7 @@ class Env(gymnasium.Env[Observation, npt.NDArray[Any]]):
 
     @property
     def compute_reward(self) -> ComputeReward:
-        """Computes what goals would have earned, as Gymnasium-Robotics does; for those of a step, the reward of the step.
+        """Computes the rewards of goals, as Gymnasium-Robotics does. For the goals of a step it is that step's reward.
 
         It is called as ``compute_reward(achieved_goal, desired_goal, info)``, with goals of the shape (goal,) and the
         information of the step, or with K goals, (K, goal), and the information of K steps; it returns the reward, or K of
@@ -210,7 +210,7 @@ class Env(gymnasium.Env[Observation, npt.NDArray[Any]]):
         return None
 
     def close(self) -> None:
-        """Frees the environment and closes the window; what comes after raises ``RuntimeError``.
+        """Frees the environment and closes the window. Later calls raise ``RuntimeError``.
 
         The episode that a :class:`babybench.data.Recorder` is recording ends.
         """
@@ -275,7 +275,7 @@ class Env(gymnasium.Env[Observation, npt.NDArray[Any]]):
         return self._core.depth(camera, width, height)
 
     def segmentation(self, camera: str = "eye_left", width: int = 64, height: int = 64) -> npt.NDArray[np.int32]:
-        """Draws the id of the geom in each pixel, (height, width); -1 where none is (names: ``geom_names``)."""
+        """Draws the id of the geom in each pixel, (height, width); -1 in the background (names: ``geom_names``)."""
         return self._core.segmentation(camera, width, height)
 
     # --- what the numbers are ---

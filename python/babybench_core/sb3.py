@@ -32,7 +32,7 @@ _PAIRS = ("right_eye_right_hand", "right_eye_left_hand", "left_eye_right_hand", 
 
 
 def _ended(key: str, last: dict[str, Any], running: Any) -> Any:
-    """Returns what a vector would say under a key of an episode that has ended; `running` is what it says of the next one."""
+    """Returns the value that a vector reports under a key for a finished episode; `running` is that of the next one."""
     if key == "touches":
         touches = np.zeros_like(running)
         for hand, geoms in enumerate((last["right_hand_touches"], last["left_hand_touches"])):

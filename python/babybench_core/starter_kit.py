@@ -10,7 +10,7 @@ PACKAGE = "babybench_kit"
 
 @contextmanager
 def needed(by: str) -> Iterator[None]:
-    """Says how to install ``babybench-kit`` where an import inside fails for want of it.
+    """Adds advice on installing ``babybench-kit`` to import errors raised inside.
 
     Args:
         by: What needs it, for the message.

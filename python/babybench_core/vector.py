@@ -268,12 +268,12 @@ class VectorEnv(gymnasium.vector.VectorEnv):  # type: ignore[type-arg, unused-ig
         return tuple(self._core.render(env, self._camera, size, size) for env in range(self.num_envs))
 
     def close(self, **_: object) -> None:
-        """Ends the threads and frees the environments; what comes after raises ``RuntimeError``."""
+        """Ends the threads and frees the environments. Later calls raise ``RuntimeError``."""
         self.closed = True
         self._core.close()
 
     def close_extras(self, **_: object) -> None:
-        """Does nothing: :meth:`close` does it all."""
+        """Does nothing: :meth:`close` is enough."""
 
     def __del__(self) -> None:
         """Does nothing: the native part ends its threads when it goes."""
@@ -388,7 +388,7 @@ class VectorEnv(gymnasium.vector.VectorEnv):  # type: ignore[type-arg, unused-ig
     def compute_reward(
         self, env: int, achieved_goal: npt.ArrayLike, desired_goal: npt.ArrayLike, info: Infos
     ) -> Union[float, npt.NDArray[np.float64]]:
-        """Computes what goals would have earned in one environment: see :meth:`babybench.Env.compute_reward`."""
+        """Computes the rewards of goals in one environment: see :meth:`babybench.Env.compute_reward`."""
         reward = functools.partial(self._core.compute_reward, env)
         return compute_reward(reward, achieved_goal, desired_goal, info, self._core.reward_terms)
 
@@ -443,11 +443,11 @@ class VectorEnv(gymnasium.vector.VectorEnv):  # type: ignore[type-arg, unused-ig
     def _given(
         self, rewards: npt.NDArray[np.float64], terminated: Mask, truncated: Mask
     ) -> tuple[npt.NDArray[np.float64], Mask, Mask]:
-        """Returns what the caller gets: copies or views."""
+        """Returns copies or views for the caller."""
         return (rewards.copy(), terminated.copy(), truncated.copy()) if self._copy else (rewards, terminated, truncated)
 
     def _infos(self, ids: Optional[npt.NDArray[np.int64]] = None) -> dict[str, Any]:
-        """Returns the information of the last rows in Gymnasium's layout: each array with a mask of who has it."""
+        """Returns the information of the last rows in Gymnasium's layout: each array with a mask of environments."""
         infos: dict[str, Any] = self._core.infos()
         rows = self.num_envs if ids is None else len(ids)
         everyone = self._everyone if rows == self.num_envs else np.ones(rows, np.bool_)

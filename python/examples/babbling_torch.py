@@ -59,13 +59,13 @@ class Memory:
         return at
 
     def learn(self, at: int, posture: torch.Tensor, gained: torch.Tensor, was_open: torch.Tensor) -> None:
-        """Remembers what a movement led to."""
+        """Stores the outcome of a movement."""
         slot = int(self.times[at]) % OUTCOMES
         self.posture[at, slot], self.gained[at, slot], self.open[at, slot] = posture, gained, was_open
         self.times[at] += 1
 
     def promises(self, posture: torch.Tensor, worth: torch.Tensor) -> torch.Tensor:
-        """Returns what each movement promises each palm, in each of some postures: (movements, postures, palms)."""
+        """Returns the expected value of each movement for each palm in each posture: (movements, postures, palms)."""
         known = self.posture[: self.used]
         distance = torch.cdist(posture, known.flatten(0, 1)).square() / posture.shape[1]
         near = (

@@ -33,7 +33,7 @@ class Novelty(gymnasium.Wrapper[Any, Any, Any, Any]):
         return observation, info
 
     def step(self, action: Any) -> tuple[Any, float, bool, bool, dict[str, Any]]:
-        """Rewards what is new."""
+        """Rewards new touches."""
         observation, _, terminated, truncated, info = self.env.step(action)
         touched = observation["touch"] != 0
         new = int(np.sum(touched & ~self._known))

@@ -42,13 +42,13 @@ class Flat(gymnasium.Wrapper[Any, Any, Any, Any]):
         return flat.astype(np.float32)
 
     def reset(self, **options: Any) -> tuple[Floats, dict[str, Any]]:
-        """Starts an episode without knowledge."""
+        """Starts an episode, and remembers which sensors feel something at the start."""
         observation, info = self.env.reset(**options)
         self._known[:] = observation["touch"] != 0
         return self._flat(observation), info
 
     def step(self, action: Any) -> tuple[Floats, float, bool, bool, dict[str, Any]]:
-        """Rewards what is new."""
+        """Rewards new touches."""
         observation, _, terminated, truncated, info = self.env.step(action)
         touched = observation["touch"] != 0
         new = int(np.sum(touched & ~self._known))
@@ -83,7 +83,7 @@ class FlatVector(gymnasium.vector.VectorWrapper):
         return flat, {}
 
     def step(self, actions: Any) -> tuple[Floats, Any, Any, Any, dict[str, Any]]:
-        """Rewards what is new."""
+        """Rewards new touches."""
         observations, _, terminated, truncated, _ = self.env.step(actions)
         flat, touched = self._flat(observations)
         # the step after the last one of an episode is the reset: what is felt then is known

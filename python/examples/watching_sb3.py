@@ -121,7 +121,7 @@ class Archive:
         self.lists: dict[int | None, list[Trial]] = {0: [], 1: [], None: []}
 
     def add(self, trial: Trial) -> None:
-        """Adds a trial, to what the same posture let see before."""
+        """Adds a trial to earlier trials of the same posture."""
         for other in [t for trials in self.lists.values() for t in trials if np.array_equal(t.posture, trial.posture)][
             :1
         ]:

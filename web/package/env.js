@@ -363,7 +363,7 @@ export class Env {
     this.#call((core) => core.applyForce(body, push, turn, at));
   }
 
-  /** Takes off all forces on bodies. */
+  /** Removes all applied forces. */
   releaseForces() {
     this.#call((core) => core.releaseForces());
   }

@@ -35,7 +35,7 @@ export class FreedError extends Error {
   }
 }
 
-/** Something is missing that this place of JavaScript does not have, or that was not loaded yet. */
+/** Something that this JavaScript environment lacks, or that is not loaded yet. */
 export class MissingError extends Error {
   /** @param {string} message */
   constructor(message) {

@@ -5,7 +5,7 @@ import { MissingError } from "./errors.js";
 import { checkSource, locate } from "./load.js";
 import { guarded, memory } from "./module.js";
 
-/** Those that are there. */
+/** Faces that exist. */
 const brought = new Set(["default"]);
 
 /**

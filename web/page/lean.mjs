@@ -3,7 +3,7 @@
 import { readFileSync, realpathSync } from "node:fs";
 import { join } from "node:path";
 
-/** Files replaced by as much as the renderer asks of them. */
+/** Files replaced by the parts that the renderer uses. */
 const STUBS = {
   "renderers/webxr/WebXRManager.js": `export class WebXRManager {
     enabled = false; isPresenting = false; cameraAutoUpdate = true;

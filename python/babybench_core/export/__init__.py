@@ -41,7 +41,7 @@ FORMATS: dict[str, Format] = {
 
 
 def library(format: str) -> Any:
-    """Imports what a format needs.
+    """Imports the library of a format.
 
     Raises:
         ModuleNotFoundError: It is not installed; the error says how to.

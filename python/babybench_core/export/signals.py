@@ -90,7 +90,7 @@ class Signal:
 
 
 def signals(episode: Episode) -> list[Signal]:
-    """Returns what an episode tells of each step but for its time."""
+    """Returns the values of each step of an episode, without time."""
     manifest = episode.manifest
     joints, each = manifest["joints"], [""]
     names = [joint["name"] for joint in joints]
@@ -131,7 +131,7 @@ def regions(manifest: Mapping[str, Any]) -> dict[str, int]:
 
 
 def sensor_regions(episode: Episode) -> npt.NDArray[np.intp]:
-    """Returns the number of the region of each touch sensor; -1 for those of others."""
+    """Returns the index of each touch sensor's region; -1 for other bodies."""
     record, of = episode.record, regions(episode.manifest)
     names = record.bodies
     by_body = np.array([of.get(name, -1) for name in names], np.intp)

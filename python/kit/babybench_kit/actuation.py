@@ -56,7 +56,7 @@ class ActuationModel(Replaceable):
         """Updates the actuators before each physics step of a step but the first."""
 
     def observations(self) -> Array:
-        """Returns what proprioception says of the actuators."""
+        """Returns the actuators' part of proprioception."""
         raise NotImplementedError
 
     def cost(self) -> float:
@@ -80,7 +80,7 @@ class EngineActuation(ActuationModel):
     """Attributes that the engine does not take over."""
 
     def __init_subclass__(cls, **arguments: Any) -> None:
-        """Refuses subclasses with another value of what the engine does not take over."""
+        """Refuses subclasses that change values which the engine does not read."""
         super().__init_subclass__(**arguments)
         if cls.__module__ != __name__:
             for name in sorted(cls._fixed & set(vars(cls))):
@@ -153,7 +153,7 @@ class EngineActuation(ActuationModel):
             self._core.substep()
 
     def observations(self) -> Array:
-        """Returns what proprioception says of the actuators."""
+        """Returns the actuators' part of proprioception."""
         self._core.observe()
         return np.array(self._core.proprioception()[self._core.layout["actuation"]])
 

@@ -14,7 +14,7 @@ from .course import Course
 
 
 class Beneath(Protocol):
-    """The engine under one environment, as its model and its state know it: :class:`babybench_kit.core.Core`."""
+    """The engine under one environment, shared by its model and its state: :class:`babybench_kit.core.Core`."""
 
     config: dict[str, Any]
     assets: Path | None

@@ -14,7 +14,7 @@ _FAMILIES = {"spring_damper": "motor", "muscle": "motor", "positional": "positio
 
 
 def _checked(config: Mapping[str, Any] | None) -> Mapping[str, Any]:
-    """Returns the configuration, if it has what a scene needs."""
+    """Returns the configuration, if it has the keys that a scene needs."""
     if not isinstance(config, Mapping):
         raise TypeError(f"build needs a configuration, a dict, not {type(config).__name__}")
     needed = ("behavior", "scene", "actuation_model", *(f"act_{part}" for part in PARTS))

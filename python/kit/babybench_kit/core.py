@@ -100,7 +100,7 @@ class Core:
         return sizes == (per_motor * motors, expected)
 
     def _proprioception_layout(self) -> dict[str, slice]:
-        """Returns where each part of proprioception stands: in alphabetical order of their names."""
+        """Returns the position of each part of proprioception, in alphabetical order of their names."""
         joints = len(self.mimo_joints)
         torques = 3 * sum(name.startswith("proprio:") for name in self.names["sensor"])
         total = len(self.parts.proprioception)
@@ -120,7 +120,7 @@ class Core:
     # --- moving on ---
 
     def _change(self, change: str) -> None:
-        """Forgets what was read of the state, which is another one now."""
+        """Clears cached values after the state has changed."""
         self.course.change(change)
         self._contacts = self._poses = None
 
@@ -214,7 +214,7 @@ class Core:
             self.course.change("sense")
 
     def observation(self) -> dict[str, NDArray[Any]]:
-        """Returns what was sensed last, in fresh arrays."""
+        """Returns the last observation in fresh arrays."""
         return self.engine.observation()
 
     def proprioception(self) -> Array:
@@ -222,12 +222,12 @@ class Core:
         return self.parts.proprioception
 
     def touch(self) -> NDArray[np.float32]:
-        """Returns what was felt last, (n,), N."""
+        """Returns the last touch forces, (n,), N."""
         felt = self.parts.touch
         return np.zeros(0, np.float32) if felt is None else felt
 
     def contacts(self, pull: bool = True) -> dict[str, NDArray[Any]]:
-        """Returns the contacts of the present state as columns; by choice without reading back what a script has written."""
+        """Returns the contacts of the current state as columns, optionally without reading back a script's changes."""
         if pull:
             self.pull()
         if self._contacts is None:

@@ -1,4 +1,4 @@
-"""Where an environment stands between two changes of its state: all that is not a number of the simulation.
+"""The progress of an environment between two changes of its state: everything that is not a number of the simulation.
 
 A :class:`Course` has three parts, each of which changes in the ways of its table and in no other; ``-`` is refused.
 
@@ -79,7 +79,7 @@ class Copy(Enum):
 
 
 class Turn(Enum):
-    """Who goes on at present."""
+    """The part that runs at present."""
 
     SCRIPT = "script"
     """Code that may hold the copy and write to it."""
@@ -127,7 +127,7 @@ def _after(changes: Mapping[str, Mapping[_Part, _Part]], change: str, present: _
 
 
 class Course:
-    """Where an environment stands.
+    """The progress of an environment.
 
     Attributes:
         moment: What is known of the present instant.
@@ -140,7 +140,7 @@ class Course:
         self.moment, self.copy, self.turn = Moment.CLEARED, Copy.LATE, Turn.SCRIPT
 
     def change(self, change: str) -> None:
-        """Makes a change of one of the tables.
+        """Applies a transition of one of the tables.
 
         Raises:
             IllegalChange: The table does not have it here.

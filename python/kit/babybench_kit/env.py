@@ -184,7 +184,7 @@ class BabyBenchEnv(MIMoEnv):
         part.replace(path)
 
     def _info(self) -> dict[str, Any]:
-        """Counts, and returns what the behavior reports."""
+        """Updates the counters, and returns the report of the behavior."""
         return {}
 
     def _info_init(self) -> None:

@@ -25,7 +25,7 @@ class Live:
         self.idle = 0
 
     def held(self) -> bool:
-        """Tells whether anybody but the environment holds the state or one of its arrays."""
+        """Returns whether the state or one of its arrays is referenced outside the environment."""
         raise NotImplementedError
 
     def refresh(self) -> None:
@@ -83,7 +83,7 @@ class ViewLive(Live):
         return [arrays[name] if name != "act" else self._act for name in STATE]
 
     def held(self) -> bool:
-        """Tells whether anybody but the environment holds the state or one of its arrays."""
+        """Returns whether the state or one of its arrays is referenced outside the environment."""
         return sys.getrefcount(self.data) > self.idle_data or sys.getrefcount(self.data._memory) > self.idle
 
     def refresh(self) -> None:

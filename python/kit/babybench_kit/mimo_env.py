@@ -176,7 +176,7 @@ class MIMoEnv(SensingEnv):
         self._set_observation_space()
 
     def _share_of_the_script(self) -> Share:
-        """Returns what of this environment a script has replaced."""
+        """Returns the parts of this environment that a script has replaced."""
         model = self.actuation_model
         self._core.plain_actuation = self._core.whole and type(model) in MODELS.values() and not model._replaced
         if not self._observes_plainly():
@@ -211,7 +211,7 @@ class MIMoEnv(SensingEnv):
         return Core(settings, scene, self.width, self.height)
 
     def _name_parts(self) -> None:
-        """Finds what is MIMo's in the scene."""
+        """Finds MIMo's elements in the scene."""
         core = self._core
         self.metadata = {**type(self).metadata, "render_fps": round(1 / self.dt)}
         self._get_joints()
@@ -226,7 +226,7 @@ class MIMoEnv(SensingEnv):
 
     @property
     def model(self) -> Any:
-        """Returns MuJoCo's model of the scene, or what stands for it."""
+        """Returns MuJoCo's model of the scene, or its stand-in."""
         return self._core.model
 
     @model.setter
@@ -235,7 +235,7 @@ class MIMoEnv(SensingEnv):
 
     @property
     def data(self) -> Any:
-        """Returns MuJoCo's present state, or what stands for it."""
+        """Returns MuJoCo's current state, or its stand-in."""
         return self._core.data
 
     @data.setter
@@ -269,7 +269,7 @@ class MIMoEnv(SensingEnv):
         return np.concatenate([engine.state_array("qpos"), engine.state_array("qvel")])
 
     def swap_facial_expression(self, emotion: str) -> None:
-        """Lets MIMo make another face, one of :attr:`facial_expressions`, in all that is drawn from now on."""
+        """Changes MIMo's face in later pictures, to one of :attr:`facial_expressions`."""
         assert emotion in self.facial_expressions, f"{emotion} is not a valid facial expression!"
         self._core.pull()
         self._core.engine.swap_facial_expression(emotion)

@@ -105,7 +105,7 @@ class MujocoLive(Live):
         return self._state
 
     def held(self) -> bool:
-        """Tells whether anybody but the environment holds the state or one of its arrays."""
+        """Returns whether the state or one of its arrays is referenced outside the environment."""
         return self._references() > self.idle
 
     def refresh(self) -> None:

@@ -92,7 +92,7 @@ class SensingEnv(gym.Env):  # type: ignore[type-arg,unused-ignore]
             self.__dict__["_share"] = self._share_of_the_script()
 
     def _share_of_the_script(self) -> Share:
-        """Returns what of this environment a script has replaced."""
+        """Returns the parts of this environment that a script has replaced."""
         raise NotImplementedError
 
     def _observes_plainly(self) -> bool:
@@ -157,7 +157,7 @@ class SensingEnv(gym.Env):  # type: ignore[type-arg,unused-ignore]
         return observation
 
     def get_achieved_goal(self) -> Any:
-        """Returns what is reached at present."""
+        """Returns the goal that the current state has achieved."""
         raise NotImplementedError
 
 

@@ -36,7 +36,7 @@ export class App {
     this.frame = new Float32Array(0);
     /** Whether time runs. */
     this.playing = false;
-    /** The network that was brought. */
+    /** The network that the user has loaded. */
     /** @type {Network | null} */
     this.model = null;
     /** The user's own room, if any. */
@@ -56,7 +56,7 @@ export class App {
     /** Changes that wait for their world, in order. */
     /** @type {Settings[]} */
     this.asked = [];
-    /** The picture of the MIMo beside the first. */
+    /** The picture of the second MIMo. */
     this.second = new Second(this);
     this.recordings = new Recordings(this);
     this.sharing = new Sharing(this);
@@ -275,7 +275,7 @@ export class App {
     }
   }
 
-  /** Starts the worker again, after it died or instead of one that hangs, with what the page knows. */
+  /** Restarts a worker that died or hangs, from the state of the page. */
   async revive() {
     if (this.world.alive && !this.world.hung && !(await this.recordings.consent("A new start"))) return;
     this.connectAnew();
@@ -426,7 +426,7 @@ export class App {
   }
 
   /**
-   * Runs something and says what went wrong.
+   * Runs a function and shows its error.
    * @param {() => Promise<unknown> | void} task
    */
   async attempt(task) {

@@ -42,7 +42,7 @@ export function say(e, text) {
 }
 
 /**
- * Hands a file to the person.
+ * Offers a file for download.
  * @param {string} name
  * @param {Blob} blob
  */

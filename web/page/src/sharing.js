@@ -90,7 +90,7 @@ export class Sharing {
     return kept?.state ? this.enter({ state: kept.state, snapshot: null, second: null, network: kept.network ?? null, room: kept.room ?? null }) : null;
   }
 
-  /** Goes where the address has gone: back, forward, or to a link that was pasted. */
+  /** Follows a change of the address: back, forward, or a pasted link. */
   async follow() {
     if (!(await this.app.recordings.consent("Another address"))) return;
     this.app.play(false);
@@ -115,7 +115,7 @@ export class Sharing {
   }
 
   /**
-   * Makes what a link holds the state of the page. What there is not is named, and the rest kept.
+   * Replaces the state of the page by that of a link. What there is not is named, and the rest kept.
    * @param {Link} found
    * @returns {Promise<"moment" | "settings" | null>} nothing if it cannot be opened
    */
@@ -193,7 +193,7 @@ export class Sharing {
   }
 
   /**
-   * Fetches a file; what goes wrong is said.
+   * Fetches a file and shows errors.
    * @template T
    * @param {string | null} url
    * @param {(answer: Response) => Promise<T>} read

@@ -41,7 +41,7 @@ const ALLOWED = {
 };
 
 /**
- * Reads a state from outside: what is allowed is kept, the rest is as at first and is named.
+ * Reads an external state: keeps valid values, replaces others by defaults and names them.
  * @param {Record<string, unknown>} said
  * @returns {{ state: PageState, refused: string[] }}
  */

@@ -52,7 +52,7 @@ export class World {
     return worker;
   }
 
-  /** Asks a worker that has something to do and is silent whether it lives. */
+  /** Pings a busy worker that does not answer. */
   look() {
     const now = performance.now();
     if (document.hidden) this.pinged &&= now; // nobody waits, and clocks of hidden pages are slow

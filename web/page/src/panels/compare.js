@@ -3,7 +3,7 @@ import { el, say } from "../dom.js";
 import { POLICIES } from "./move.js";
 import { card, check, slider } from "./controls.js";
 
-/** The second MIMo as he first comes: another age. @type {import("../types").Twin} */
+/** Initial settings of the second MIMo: another age. @type {import("../types").Twin} */
 const FIRST = { age: 3, policy: "babbling", sensory: 0, motor: 0 };
 /** The age of the original's proportions, months. */
 const ORIGINAL = 18;

@@ -12,7 +12,7 @@ export function card(title, ...children) {
 }
 
 /**
- * Side by side, one of a few.
+ * A row of buttons of which one is chosen.
  * @param {string} label
  * @param {[string, string][]} options value and text
  * @param {(value: string) => void} chosen

@@ -32,7 +32,7 @@ export function notices(app) {
 }
 
 /**
- * Asks a question with two answers; closing it says no.
+ * Asks a question with two answers; closing it means no.
  * @param {string} text
  * @param {string} yes
  * @param {string} no

@@ -92,7 +92,7 @@ export class Bodies extends Group {
   }
 
   /**
-   * Bends the skins; `worn` has places and normals of the vertices of each.
+   * Bends the skins; `worn` has positions and normals of the vertices of each.
    * @param {Float32Array} worn
    */
   wear(worn) {

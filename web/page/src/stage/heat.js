@@ -14,7 +14,7 @@ export const HEAT = /** @type {const} */ ([
 export const SCALE = /** @type {const} */ ([0, 0.1, 1, 10]);
 
 /**
- * Returns the place of a force on the scale, 0 to 1: logarithmic, as what is felt is.
+ * Returns the place of a force on the scale, 0 to 1: logarithmic, as perceived intensity is.
  * @param {number} newton
  */
 export const place = (newton) => Math.min(1, Math.log(1 + 20 * newton) / Math.log(201));

@@ -18,7 +18,7 @@ export function stretch(d) {
 }
 
 /**
- * Returns a word that is equal for drawables which one geometry can show.
+ * Returns a key that drawables of the same geometry share.
  * @param {Drawable} d
  */
 export function shapeKey(d) {

@@ -272,7 +272,7 @@ function ofThePage(d) {
   return d.name === "rug" ? { ...d, texture: null, specular: 0, rgba: FELT } : d;
 }
 
-/** The colour of what has none. */
+/** The colour of geoms that have none. */
 const GREY = "0.5,0.5,0.5,1";
 
 /**

@@ -39,7 +39,7 @@ async function bring(bytes) {
 }
 
 /**
- * Whether the module is past using: it trapped, or got no memory.
+ * Whether the module is unusable because it trapped or ran out of memory.
  * @param {unknown} e
  */
 const deadly = (e) => e instanceof WebAssembly.RuntimeError || (e instanceof RangeError && /memory/i.test(e.message)) || (e instanceof Error && e.name === "ModuleError");

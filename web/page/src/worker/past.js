@@ -2,7 +2,7 @@
 
 /** Seconds between snapshots. */
 const APART = 0.5;
-/** Seconds of a life that one can go back. */
+/** Seconds that users can go back in a live run. */
 const KEPT = 30;
 /** Most snapshots of a recording, which is kept whole. */
 const MOST = 128;
@@ -79,7 +79,7 @@ export class Past {
   }
 
   /**
-   * What was done in the step that comes next.
+   * The recorded inputs of the next step.
    * @param {Stretch} stretch that it belongs to
    */
   deed(stretch) {
@@ -88,7 +88,7 @@ export class Past {
   }
 
   /**
-   * Keeps a step that was done.
+   * Stores a step.
    * @param {Stretch} stretch that it belongs to
    * @param {Float32Array} action
    * @param {boolean} drawn whether it was drawn by chance
@@ -127,7 +127,7 @@ export class Past {
   }
 
   /**
-   * The stretch that something other than a step led to at this very moment.
+   * The stretch that starts at the current moment because something other than a step has changed the world.
    * @param {number} at
    */
   cut(at) {

@@ -111,7 +111,7 @@ export class LiveWorld {
 
   /** Returns an error for requests that two MIMos do not support. */
   single() {
-    if (this.twin) throw new Error("A recording is of one MIMo: end the comparison first.");
+    if (this.twin) throw new Error("A recording holds one MIMo: end the comparison first.");
   }
 
   /** Frees the memory. */
@@ -145,7 +145,7 @@ export class LiveWorld {
   }
 
   /**
-   * Does again what was done.
+   * Repeats recorded inputs.
    * @param {import("./past.js").Stretch} stretch of the past that the step is in
    */
   again(stretch) {
@@ -239,7 +239,7 @@ export class LiveWorld {
   }
 
   /**
-   * Steps to a moment for a while.
+   * Steps towards a moment until it is time to check messages.
    * @param {number} target
    * @returns {boolean} whether it is reached
    */
@@ -288,7 +288,7 @@ export class LiveWorld {
     this.twin?.reset(seed);
   }
 
-  /** Lets go of everything that belongs to a run. */
+  /** Releases everything that belongs to a run. */
   settle() {
     this.tape = null;
     this.goal = null;
