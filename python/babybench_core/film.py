@@ -151,8 +151,7 @@ def film(
         TypeError: This is not an environment of this package.
         ValueError: ``fps`` is not in its range.
     """
-    made = isinstance(env, (str, Mapping))
-    acting = make(env) if made else env  # type: ignore[arg-type]
+    acting: gymnasium.Env[Any, Any] = make(env) if isinstance(env, (str, Mapping)) else env
     made_film = Film(acting, camera=camera, width=width, height=height, fps=fps)
     inside = made_film._inside
     choose = chooser(inside, policy)
@@ -162,6 +161,6 @@ def film(
         made_film.add()
         if terminated or truncated:
             observation, _ = acting.reset()
-    if made:
+    if acting is not env:
         acting.close()
     return made_film

@@ -126,7 +126,7 @@ class VecEnv(BaseVecEnv):
         return self.envs.render() or [None] * self.num_envs
 
     def get_attr(self, attr_name: str, indices: Indices = None) -> list[Any]:
-        """Returns an attribute of each environment (see :meth:`babybench.VectorEnv.get_attr`), or one of the vector for each."""
+        """Returns an attribute of each environment (see :meth:`babybench.VectorEnv.get_attr`), or the vector's own for each."""
         try:
             values = self.envs.get_attr(attr_name)
         except AttributeError:

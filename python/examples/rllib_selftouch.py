@@ -76,7 +76,7 @@ class FlatVector(gymnasium.vector.VectorWrapper):
         return flat.astype(np.float32), touched
 
     def reset(self, **options: Any) -> tuple[Floats, dict[str, Any]]:
-        """Starts episodes without knowledge."""
+        """Starts episodes, and remembers which sensors feel something at the start."""
         observations, _ = self.env.reset(**options)
         flat, self._known = self._flat(observations)
         self._over[:] = False

@@ -82,7 +82,7 @@ impl Clock {
 mod tests {
     use super::*;
 
-    /// The steps, of the first hundred at 200 steps a second, in which a clock of 30 samples a second samples.
+    /// The steps among the first hundred in which a clock of 30 samples a second samples, at 200 steps a second.
     fn looks(phase: f64) -> Vec<u64> {
         let mut clock = Clock::new(30.0, 0.005);
         clock.reset(phase);

@@ -77,7 +77,7 @@ impl<J> Shared<J> {
         }
     }
 
-    /// Waits for jobs, for a thread that has found none.
+    /// Blocks a thread without work until there are jobs.
     fn idle<'a>(&'a self, mut queues: MutexGuard<'a, Queues<J>>, index: usize) -> MutexGuard<'a, Queues<J>> {
         if index < queues.active {
             // read under the lock that `submit` counts under: a batch that comes before `wait` is seen below, or the

@@ -378,7 +378,7 @@ impl OnnxPolicy {
 }
 
 impl ModelInput {
-    /// Returns an image in bytes of an eye.
+    /// Returns the image of an eye as bytes.
     fn pixels(&self, o: &Observation) -> Vec<u8> {
         match self.senses.first().and_then(|key| o.get(key)) {
             Some(Values::U8(image)) => self.ordered(image),

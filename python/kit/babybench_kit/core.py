@@ -144,7 +144,7 @@ class Core:
             self._live.pull()
 
     def reset_data(self) -> None:
-        """Forgets the past; see ``mujoco.mj_resetData``. Locks that a script has set begin to hold."""
+        """Resets the state, as ``mujoco.mj_resetData`` does, and applies the locks that a script has set."""
         if self._watched is not None:
             self._watched.check()
         self.parts.reset_data()

@@ -38,7 +38,7 @@ function eyes(app, event, title) {
   return section;
 }
 
-/** Difference in brightness, of 255, within a picture that is not plain. */
+/** Smallest difference in brightness, of 255, for a picture to count as not plain. */
 const SOMETHING = 30;
 
 /**

@@ -1,4 +1,4 @@
-//! Vertices that are replaced by one beside them.
+//! Replaces vertices by a neighbouring one.
 
 use super::super::Builder;
 use super::super::parts::{HullFailure, HullResult, Id, NONE, VertexMerge, drop_sorted, drop_swapping, push_unique};
