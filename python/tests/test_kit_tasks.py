@@ -369,3 +369,27 @@ def test_senses_and_actuation_have_mimos_attributes() -> None:
         wanted = [name for name in [*names["attributes"], *names["methods"], *names["properties"]] if name[0] != "_"]
         uncalled = getattr(type(part), "_uncalled", ())
         assert [name for name in wanted if not hasattr(part, name) and name not in uncalled] == [], type(part).__name__
+
+
+def test_scenes_without_a_camera_are_seen_from_a_free_one() -> None:
+    near, far = (
+        made("MIMoReach-v0", render_mode="rgb_array", width=48, height=32, default_camera_config={"distance": distance})
+        for distance in (1.0, 4.0)
+    )
+    pictures = []
+    for env in (near, far):
+        env.reset(seed=0)
+        pictures.append(env.unwrapped.render())
+    assert pictures[0].shape == (32, 48, 3)
+    assert not np.array_equal(*pictures)
+
+
+def test_a_window_shows_the_scene(monkeypatch: pytest.MonkeyPatch) -> None:
+    pytest.importorskip("pygame")
+    monkeypatch.setenv("SDL_VIDEODRIVER", "dummy")
+    env = made("MIMoReach-v0", render_mode="human", width=64, height=48)
+    env.reset(seed=0)
+    for _ in range(2):
+        env.step(env.action_space.sample())
+        assert env.render() is None
+    env.close()
