@@ -35,6 +35,27 @@ fn the_chapter_on_configuration_is_what_inspect_prints() {
 }
 
 #[test]
+fn the_tables_of_infants_are_what_inspect_prints() {
+    let out = Command::new(env!("CARGO_BIN_EXE_babybench"))
+        .args(["inspect", "--sources"])
+        .output()
+        .expect("the program runs");
+    assert!(out.status.success(), "{}", String::from_utf8_lossy(&out.stderr));
+    let printed = String::from_utf8(out.stdout).expect("text");
+    let pages = pages();
+    let page = pages.iter().find(|(path, _)| path.ends_with("infant.md"));
+    let (_, page) = page.expect("the chapter");
+    let tables: Vec<&str> = printed.split("\n\n").map(str::trim).collect();
+    assert_eq!(tables.len(), 5);
+    for table in tables {
+        assert!(
+            page.contains(table),
+            "docs/guide/infant.md is old: inspect --sources prints\n{table}"
+        );
+    }
+}
+
+#[test]
 fn links_and_pictures_of_the_guide_lead_somewhere() {
     let mut found = 0;
     for (path, text) in pages() {

@@ -33,14 +33,18 @@ class ActionNoise:
 
         Args:
             noise: ``white`` (new at every step), ``held`` (for 0.5 s; ``held:0.1`` for 0.1 s), ``ou`` (Ornstein-Uhlenbeck;
-                ``ou:0.2`` with a correlation of 0.2 s), ``pink``, or ``oscillators`` (coupled, of 1 Hz on average;
-                ``oscillators:2`` of 2 Hz).
+                ``ou:0.2`` with a correlation of 0.2 s), ``pink``, ``color:0.69`` (power falls with that power of the
+                frequency, 0 to 2), ``color_by_age`` (the exponent of infants of MIMo's age; ``color_by_age:3`` of 3
+                months), or ``oscillators`` (coupled, of 1 Hz on average; ``oscillators:2`` of 2 Hz).
             env: The environment, or the vector.
             seed: Of a vector, environment i gets the seed plus i.
 
         Raises:
-            ValueError: Not a noise; the text says what is.
+            ValueError: Not a noise, or ``color_by_age`` of a MIMo without an age; the text says what is.
         """
+        age = env.config.get("age")
+        if noise == "color_by_age" and age is not None:
+            noise = f"color_by_age:{age}"
         if isinstance(env, VectorEnv):
             count, space = env.num_envs, env.single_action_space
         else:

@@ -16,8 +16,9 @@ pub struct ActionNoise {
 impl ActionNoise {
     #[new]
     fn new(noise: &str, low: Vec<f32>, high: Vec<f32>, step: f64, seed: u64) -> PyResult<Self> {
-        let noise: Noise = noise
-            .parse()
+        let noise = noise
+            .parse::<Noise>()
+            .and_then(|noise| noise.at_age(None))
             .map_err(|e: NoiseError| PyValueError::new_err(e.to_string()))?;
         Ok(Self {
             noise: babybench::spaces::ActionNoise::new(noise, &BoxSpace::new(low, high), step, seed),

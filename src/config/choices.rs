@@ -106,6 +106,39 @@ choices! {
 }
 
 choices! {
+    /// What the strength of motors and muscles follows over age (`strength`).
+    StrengthModel {
+        /// The volume of the part that carries them.
+        #[default]
+        Volume = "volume",
+        /// Ratios to the torque of gravity, calibrated on what infants can do.
+        Infant = "infant",
+    }
+}
+
+choices! {
+    /// What the springs and dampers of joints follow over age (`springs`).
+    SpringModel {
+        /// Nothing: they are those of the original proportions.
+        #[default]
+        Fixed = "fixed",
+        /// The torque of gravity on the joint.
+        Weight = "weight",
+    }
+}
+
+choices! {
+    /// The source of MIMo's proportions over age (`proportions`).
+    Proportions {
+        /// The formulas of MIMo's authors.
+        #[default]
+        Mimo = "mimo",
+        /// The same length, divided between trunk and legs as in infants.
+        Measured = "measured",
+    }
+}
+
+choices! {
     /// The infant that learns, of two in a custom scene (`learner`).
     Learner {
         /// The one in `mimo_location`.

@@ -2,8 +2,8 @@
 
 use super::error::Conflict;
 use super::{
-    ActuationModel, Behavior, Compat, Config, DelayUnit, Delays, KeyValue, TouchFunction, VisionOutput, defaults,
-    latencies, table,
+    ActuationModel, Behavior, Compat, Config, DelayUnit, Delays, KeyValue, StrengthModel, TouchFunction, VisionOutput,
+    defaults, latencies, table,
 };
 
 /// Greatest delay, steps of the environment.
@@ -26,6 +26,9 @@ const SIDES: [&str; 7] = [
     "vision_height_right",
 ];
 
+/// Keys of MIMo's body and motors that the Python code of BabyBench does not have.
+const BODY: [&str; 4] = ["strength", "springs", "proportions", "noise_motor_color"];
+
 /// Keys that shape a sense, and what to do when it is off.
 struct SenseKeys {
     off: fn(&Config) -> bool,
@@ -34,7 +37,7 @@ struct SenseKeys {
 }
 
 /// The keys that shape senses that can be off, or motors.
-const SHAPING: [SenseKeys; 6] = [
+const SHAPING: [SenseKeys; 8] = [
     SenseKeys {
         off: |c| !c.vision_active,
         keys: &[
@@ -97,6 +100,26 @@ const SHAPING: [SenseKeys; 6] = [
         ],
         reason: "it shapes pain, which is off; set `pain_active: true`",
     },
+    SenseKeys {
+        off: |c| c.noise.motor == 0.0,
+        keys: &["noise_motor_color"],
+        reason: "it is the colour of the noise of actions, which is off; set `noise_motor` above 0",
+    },
+    SenseKeys {
+        off: |c| c.strength != StrengthModel::Infant,
+        keys: &[
+            "strength_neck",
+            "strength_trunk",
+            "strength_shoulder",
+            "strength_elbow",
+            "strength_wrist",
+            "strength_grip",
+            "strength_hip",
+            "strength_knee",
+            "strength_ankle",
+        ],
+        reason: "it is a factor on the strength of infants; set `strength: infant`",
+    },
 ];
 
 impl Config {
@@ -143,9 +166,18 @@ impl Config {
                 self.vision_lazy.to_string(),
                 "the Python code that `compat: reference` follows draws images in every step",
             ),
-            Compat::Reference => return self.eyes_unlike_reference(),
+            Compat::Reference => return self.body_unlike_reference().or_else(|| self.eyes_unlike_reference()),
         };
         Some((key, value, reason.to_string()))
+    }
+
+    /// Returns the first value of the body that the Python code that `compat: reference` follows cannot have.
+    fn body_unlike_reference(&self) -> Option<Conflict> {
+        let mut keys = Self::keys().iter().filter(|key| BODY.contains(&key.name));
+        let key = keys.find(|key| key.value(self) != key.default_value())?;
+        let reason =
+            "the Python code that `compat: reference` follows does not have it; leave it out, or set `compat: api`";
+        Some((key.name, key.value(self).to_yaml(), reason.to_string()))
     }
 
     /// Returns the first value of the eyes that the Python code that `compat: reference` follows cannot have.

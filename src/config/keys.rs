@@ -1,8 +1,8 @@
 //! Keys, and the macro that reads their table.
 
 use super::choices::{
-    ActuationModel, Behavior, Compat, DelayUnit, EngineKind, FacialExpression, Learner, Limb, RendererKind,
-    StartingPosition, TouchFunction, TouchResponse, VisionOutput,
+    ActuationModel, Behavior, Compat, DelayUnit, EngineKind, FacialExpression, Learner, Limb, Proportions,
+    RendererKind, SpringModel, StartingPosition, StrengthModel, TouchFunction, TouchResponse, VisionOutput,
 };
 use super::kinds::{KeyKind, KeyValue};
 use super::outputs::VisionOutputs;
@@ -43,6 +43,9 @@ field! {
     StartingPosition, Choice, v => Self::from_name(v), |f| f.name();
     Learner, Choice, v => Self::from_name(v), |f| f.name();
     Limb, Choice, v => Self::from_name(v), |f| f.name();
+    StrengthModel, Choice, v => Self::from_name(v), |f| f.name();
+    SpringModel, Choice, v => Self::from_name(v), |f| f.name();
+    Proportions, Choice, v => Self::from_name(v), |f| f.name();
     ActuationModel, Choice, v => Self::from_name(v), |f| f.name();
     TouchFunction, Choice, v => Self::from_name(v), |f| f.name();
     TouchResponse, Choice, v => Self::from_name(v), |f| f.name();

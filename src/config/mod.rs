@@ -41,8 +41,8 @@ mod yaml;
 mod tests;
 
 pub use choices::{
-    ActuationModel, Behavior, Compat, DelayUnit, EngineKind, FacialExpression, Learner, Limb, RendererKind,
-    StartingPosition, TouchFunction, TouchResponse, VisionOutput,
+    ActuationModel, Behavior, Compat, DelayUnit, EngineKind, FacialExpression, Learner, Limb, Proportions,
+    RendererKind, SpringModel, StartingPosition, StrengthModel, TouchFunction, TouchResponse, VisionOutput,
 };
 pub use error::{ConfigError, Location};
 pub use examples::Example;
@@ -54,7 +54,7 @@ pub use scene::Scene;
 pub use table::Config;
 pub use table::{
     CatchOptions, Delays, EyeOptions, MAX_AGE, Measurements, MobileOptions, NoiseLevels, PainOptions, PlayOptions,
-    RollOverOptions,
+    RollOverOptions, StrengthFactors,
 };
 
 use std::path::Path;

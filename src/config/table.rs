@@ -2,8 +2,8 @@
 //! ranges and documentation all follow from it.
 
 use super::choices::{
-    ActuationModel, Behavior, Compat, DelayUnit, EngineKind, FacialExpression, Learner, Limb, RendererKind,
-    StartingPosition, TouchFunction, TouchResponse, VisionOutput,
+    ActuationModel, Behavior, Compat, DelayUnit, EngineKind, FacialExpression, Learner, Limb, Proportions,
+    RendererKind, SpringModel, StartingPosition, StrengthModel, TouchFunction, TouchResponse, VisionOutput,
 };
 use super::keys::{ConfigField, Key, config};
 use super::kinds::KeyKind;
@@ -56,6 +56,8 @@ const RATE: KeyKind = KeyKind::NoneOr {
 const SHARE: KeyKind = KeyKind::Number { min: 0.0, max: 1.0 };
 const PAIN: KeyKind = KeyKind::Number { min: 0.0, max: 1e6 };
 const MOST_PAIN: KeyKind = KeyKind::NoneOr { min: 0.0, max: 1e6 };
+const COLOR: KeyKind = KeyKind::NoneOr { min: 0.0, max: 2.0 };
+const FACTOR: KeyKind = KeyKind::Number { min: 0.0, max: 10.0 };
 const MILLIMETRES: KeyKind = KeyKind::NoneOr { min: 0.1, max: 100.0 };
 
 use KeyKind::{Bool, Choice, Document, List, Text};
@@ -108,7 +110,21 @@ config! {
     GROWTH {
         age: Option<f64> = None, AGE, "The age of MIMo's body, months; none for the original proportions.";
         strength_age: Option<f64> = None, AGE, "The age of MIMo's strength, months; none for that of his body.";
+        strength: StrengthModel = StrengthModel::Volume, Choice(StrengthModel::NAMES), "What the strength of motors and muscles follows." + "`volume` follows the part that carries them, `infant` ratios to the torque of gravity at each age, calibrated on what infants can do.";
+        springs: SpringModel = SpringModel::Fixed, Choice(SpringModel::NAMES), "What springs and dampers of joints follow." + "`fixed` keeps those of the original proportions, `weight` follows the torque of gravity on each joint.";
+        proportions: Proportions = Proportions::Mimo, Choice(Proportions::NAMES), "The source of MIMo's proportions." + "`mimo` are the authors' formulas, `measured` keeps their length and divides it between trunk and legs as in infants.";
         touch_grows: bool = false, Bool, "Touch sensors keep their number and move with the body, instead of keeping their distances.";
+        @group strength_factors: StrengthFactors, "Factors on the strength of groups of joints (`strength_neck` ...).", "Factors on the strength of groups of joints by [`StrengthModel::Infant`]." {
+            neck as strength_neck: f64 = 1.0, FACTOR, "Factor on the strength of the neck by `strength: infant`.";
+            trunk as strength_trunk: f64 = 1.0, FACTOR, "Factor on the strength of the trunk by `strength: infant`.";
+            shoulder as strength_shoulder: f64 = 1.0, FACTOR, "Factor on the strength of the shoulders by `strength: infant`.";
+            elbow as strength_elbow: f64 = 1.0, FACTOR, "Factor on the strength of the elbows by `strength: infant`.";
+            wrist as strength_wrist: f64 = 1.0, FACTOR, "Factor on the strength of the wrists by `strength: infant`.";
+            grip as strength_grip: f64 = 1.0, FACTOR, "Factor on the strength of the fingers by `strength: infant`.";
+            hip as strength_hip: f64 = 1.0, FACTOR, "Factor on the strength of the hips by `strength: infant`.";
+            knee as strength_knee: f64 = 1.0, FACTOR, "Factor on the strength of the knees by `strength: infant`.";
+            ankle as strength_ankle: f64 = 1.0, FACTOR, "Factor on the strength of the ankles and toes by `strength: infant`.";
+        }
         @group measurements: Measurements, "Measurements that replace those of the age.", "Measurements of an infant's body, as AnthroKids (1977) took them: cm, the two diameters of fingers mm. `None` leaves a measurement to the age." {
             ankle_circumference as ankle_circumference: Option<f64> = None, CENTIMETRES, "The circumference of the ankle, cm; none for the value of the age.";
             calf_circumference as calf_circumference: Option<f64> = None, CENTIMETRES, "The circumference of the calf, cm; none for the value of the age.";
@@ -149,6 +165,7 @@ config! {
             vestibular as noise_vestibular: f64 = 0.0, DEVIATION, "Standard deviation of the noise of the head's motion, m/s^2 and rad/s.";
             vision as noise_vision: f64 = 0.0, DEVIATION, "Standard deviation of the noise of images, on a scale of 255.";
             motor as noise_motor: f64 = 0.0, SHARE, "Standard deviation of the noise of actions, as a share of each number, so that it grows with effort.";
+            motor_color as noise_motor_color: Option<f64> = None, COLOR, "The exponent of the colour of `noise_motor`; none for white noise.";
         }
     }
     "Proprioception" {

@@ -55,14 +55,17 @@ fn defaults_are_those_of_the_api_page() {
                 act_hands=true act_fingers=true act_arms=true act_feet=true act_legs=true act_body=true act_head=true \
                 act_eyes=true act_others=false lock_hands=false lock_fingers=false lock_arms=false lock_feet=false lock_legs=false \
                 lock_body=false lock_head=false lock_eyes=false";
-    let growth = "age=none strength_age=none touch_grows=false ankle_circumference=none calf_circumference=none \
+    let growth = "age=none strength_age=none strength=volume springs=fixed proportions=mimo touch_grows=false \
+                  strength_neck=1.0 strength_trunk=1.0 strength_shoulder=1.0 \
+                  strength_elbow=1.0 strength_wrist=1.0 strength_grip=1.0 strength_hip=1.0 strength_knee=1.0 \
+                  strength_ankle=1.0 ankle_circumference=none calf_circumference=none \
                   elbow_hand_length=none fist_breadth=none foot_breadth=none foot_length=none \
                   forearm_circumference=none hand_breadth=none hand_length=none head_circumference=none \
                   hip_breadth=none knee_sole_length=none middle_finger_diameter=none rump_knee_length=none \
                   shoulder_elbow_length=none thigh_circumference=none thumb_diameter=none upper_arm_circumference=none";
     let delays = "delay_unit=steps delay_by_age=false delay_sensory=0.0 delay_motor=0.0 delay_proprioception=none delay_touch=none \
                   delay_vestibular=none delay_vision=none noise_proprioception=0.0 noise_touch=0.0 \
-                  noise_vestibular=0.0 noise_vision=0.0 noise_motor=0.0";
+                  noise_vestibular=0.0 noise_vision=0.0 noise_motor=0.0 noise_motor_color=none";
     let eyes = "vision_width=none vision_width_left=none vision_width_right=none vision_height=none \
                 vision_height_left=none vision_height_right=none vision_fovy=none vision_fovy_left=none \
                 vision_fovy_right=none vision_acuity=false vision_acuity_left=none vision_acuity_right=none vision_foveation=0.0 \

@@ -2,7 +2,7 @@
 
 use crate::config::{ActuationModel, Compat, Config};
 use crate::sensors::transform::DelayLine;
-use crate::spaces::{BoxSpace, NumpyRng};
+use crate::spaces::{BoxSpace, ColoredNoise, NumpyRng};
 
 /// Passes actions to the actuators, immediately or after a delay, as they are or with noise that grows with them.
 #[derive(Clone, Debug)]
@@ -13,8 +13,15 @@ pub(super) struct ActionDelay {
     compat: Compat,
     /// Standard deviation of the noise, as a share of each number.
     deviation: f64,
+    /// Exponent of its colour; `None` for white noise.
+    color: Option<f64>,
+    /// The coloured noise of an episode, from its first action on.
+    colored: Option<ColoredNoise>,
     noisy: Vec<f32>,
 }
+
+/// Bytes of a coloured noise in a snapshot: whether there is one, its seed and its step.
+const COLORED: usize = 17;
 
 impl ActionDelay {
     /// Creates the delay of a configuration, by a number of steps.
@@ -29,6 +36,8 @@ impl ActionDelay {
                 .collect(),
             compat: config.compat,
             deviation: config.noise.motor,
+            color: config.noise.motor_color,
+            colored: None,
             noisy: Vec::with_capacity(if config.noise.motor > 0.0 { space.len() } else { 0 }),
         }
     }
@@ -48,8 +57,18 @@ impl ActionDelay {
         if self.deviation == 0.0 {
             return action;
         }
-        let noisy = |&a: &f32| (f64::from(a) * (1.0 + self.deviation * rng.normal())) as f32;
         self.noisy.clear();
+        if let Some(exponent) = self.color {
+            let len = action.len();
+            let colored = self
+                .colored
+                .get_or_insert_with(|| ColoredNoise::new(exponent, len, rng.word()));
+            let each = action.iter().zip(colored.next_values());
+            let noisy = |(&a, &n): (&f32, &f32)| (f64::from(a) * (1.0 + self.deviation * f64::from(n))) as f32;
+            self.noisy.extend(each.map(noisy));
+            return &self.noisy;
+        }
+        let noisy = |&a: &f32| (f64::from(a) * (1.0 + self.deviation * rng.normal())) as f32;
         self.noisy.extend(action.iter().map(noisy));
         &self.noisy
     }
@@ -68,6 +87,7 @@ impl ActionDelay {
         if let Some(line) = &mut self.line {
             line.clear();
         }
+        self.colored = None;
     }
 
     /// Fills the delay at the end of a reset.
@@ -81,10 +101,25 @@ impl ActionDelay {
         if let Some(line) = &self.line {
             line.save(out);
         }
+        if self.color.is_some() {
+            let [seed, step] = self.colored.as_ref().map_or([0; 2], ColoredNoise::position);
+            out.push(u8::from(self.colored.is_some()));
+            out.extend([seed, step].into_iter().flat_map(u64::to_le_bytes));
+        }
     }
 
     /// Restores what was saved; `false` if the data do not fit.
     pub fn load(&mut self, bytes: &[u8]) -> bool {
+        let mut bytes = bytes;
+        if let Some(exponent) = self.color {
+            let Some((line, colored)) = bytes.split_last_chunk::<COLORED>() else {
+                return false;
+            };
+            let word = |at: usize| std::array::from_fn(|k| colored[at + k]);
+            let [seed, step] = [1, 9].map(|at| u64::from_le_bytes(word(at)));
+            self.colored = (colored[0] != 0).then(|| ColoredNoise::at(exponent, self.rest.len(), seed, step));
+            bytes = line;
+        }
         match &mut self.line {
             Some(line) => line.load(bytes),
             None => bytes.is_empty(),
@@ -93,6 +128,6 @@ impl ActionDelay {
 
     /// Returns the memory of the delay, bytes.
     pub fn memory(&self) -> usize {
-        4 * self.steps() * self.rest.len()
+        4 * self.steps() * self.rest.len() + self.colored.as_ref().map_or(0, ColoredNoise::memory)
     }
 }

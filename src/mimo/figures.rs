@@ -51,6 +51,27 @@ impl BodyFigures {
             center_of_mass: moment / mass - soles,
         })
     }
+
+    /// Returns the length from the crown to the lowest point of the hip, m, with all joints at 0; `None` without a MIMo.
+    pub fn crown_rump(model: &Model) -> Option<f64> {
+        let hip = model.body("hip")?;
+        let mut state = State::new(model, &Topology::new(model));
+        for q in MimoJoints::new(model).qpos {
+            state.qpos[q] = 0.0;
+        }
+        kinematics(model, &mut state);
+        let [_, crown] = upright_extent(model, &state, hip);
+        let up = column(&state.xmat[hip], 2);
+        let rump = (0..model.ngeom()).filter(|&g| model.geom_bodyid[g] == hip).map(|g| {
+            let far = reach(
+                model.geom_type[g],
+                model.geom_size[g],
+                mat_t_vec(&state.geom_xmat[g], up),
+            );
+            dot(up, state.geom_xpos[g]) - far
+        });
+        Some(crown - rump.fold(f64::INFINITY, f64::min))
+    }
 }
 
 /// Returns the lowest and the highest point of MIMo along the axis from his hip to his chest, m.

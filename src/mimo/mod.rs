@@ -12,6 +12,7 @@ mod locks;
 mod parts;
 mod placement;
 mod scene;
+mod sources;
 mod standards;
 mod version;
 
@@ -30,12 +31,13 @@ pub use figures::BodyFigures;
 #[cfg(feature = "report")]
 pub(crate) use figures::upright_extent;
 pub use growth::Growth;
-pub use growth::GrowthError;
+pub use growth::{GrowthError, StrengthRow};
 pub use locks::{LockError, LockReport, LockTarget};
 pub use locks::{held_by, lock, lock_of, unlock};
 pub(crate) use parts::{JOINT_PREFIX, ROOT};
 pub use parts::{MimoBodies, MimoJoints, joint_part};
 pub use placement::held_posture;
-pub use scene::{build_model, build_scene};
+pub use scene::{build_model, build_scene, strength_table};
+pub use sources::{Mark, SourcedConstant};
 pub use standards::{GrowthStandard, Lms};
 pub use version::{EYES, Version};

@@ -3,13 +3,13 @@
 use crate::assets::AssetSource;
 use crate::config::{Config, FacialExpression, Measurements};
 use crate::math::{Vec3, scale};
-use crate::mimo::Growth;
 use crate::mimo::custom_scene::{CustomScene, location};
 use crate::mimo::document::{document_path, scene_xml};
 use crate::mimo::error::SceneError;
 use crate::mimo::growth::blame;
 use crate::mimo::placement::{GeomOverlap, LowestPoint, overlaps};
 use crate::mimo::version::{EYES, SECOND_PREFIX, Version};
+use crate::mimo::{Growth, StrengthRow};
 use crate::mjcf_loader::{Draft, LoadError};
 use crate::model::Model;
 use crate::physics::compile;
@@ -53,6 +53,18 @@ pub fn build_scene(
     let model = source.build(version, config).map_err(|e| room.localized(e))?;
     room.compare(&source, &model, config)?;
     Ok(model)
+}
+
+/// Returns the greatest torques of MIMo at the age of a configuration, by both settings of its key `strength`, whichever it has; empty
+/// without an age.
+///
+/// # Errors
+/// As [`build_model`].
+pub fn strength_table(config: &Config, assets: &dyn AssetSource) -> Result<Vec<StrengthRow>, SceneError> {
+    match Growth::of(config, Version::of(config.behavior))? {
+        Some(growth) => growth.strength_rows(config, assets),
+        None => Ok(Vec::new()),
+    }
 }
 
 /// A document and what it includes.
@@ -103,12 +115,16 @@ impl<'a> SceneSource<'a> {
     /// Compiles the document with MIMo at the age of a configuration.
     fn build(&self, version: Version, config: &Config) -> Result<Model, SceneError> {
         let place = location(config.learner);
-        let other = other_growth(config, version)?;
+        let mut other = other_growth(config, version)?;
+        if let Some(growth) = other.take() {
+            other = Some(growth.mature(&of_other(config), self.assets)?);
+        }
         let Some(growth) = Growth::of(config, version)? else {
             let mut draft = self.read()?;
             grow_other(&mut draft, other.as_ref())?;
             return Ok(compile(draft.compile(self.assets)?)?);
         };
+        let growth = growth.mature(config, self.assets)?;
         let made = self.grow(&growth, other.as_ref(), place);
         if config.measurements == Measurements::default() {
             return made;
@@ -154,15 +170,19 @@ impl<'a> SceneSource<'a> {
     }
 }
 
-/// Returns how the second infant grows to his age; `None` if he has none.
-fn other_growth(config: &Config, version: Version) -> Result<Option<Growth>, SceneError> {
-    let own = Config {
+/// Returns the configuration of the second infant's body.
+fn of_other(config: &Config) -> Config {
+    Config {
         age: config.other_age,
         strength_age: None,
         measurements: Measurements::default(),
         ..config.clone()
-    };
-    Ok(Growth::of(&own, version)?)
+    }
+}
+
+/// Returns how the second infant grows to his age; `None` if he has none.
+fn other_growth(config: &Config, version: Version) -> Result<Option<Growth>, SceneError> {
+    Ok(Growth::of(&of_other(config), version)?)
 }
 
 /// Gives the second infant of a document his age.

@@ -3,12 +3,13 @@
 use crate::assets::AssetSource;
 use crate::limits::Limits;
 use crate::math::Vec3;
-use crate::model::GeomType;
+use crate::model::{BiasType, GeomType};
 
 use super::document::{Body, Camera, Document};
 use super::error::LoadError;
 use super::geom_volume;
 use super::spec::{Locations, Spec};
+use super::words::AutoBool;
 use super::xml::Tree;
 use super::{compile, read};
 
@@ -64,8 +65,36 @@ pub struct DraftActuator<'a> {
     pub joint: &'a str,
     /// Ratio of the force on the joint to the actuator's force.
     pub gear: &'a mut f64,
+    /// Range of the actuator's force; see [`DraftActuator::limit_force`].
+    pub forcerange: &'a mut [f64; 2],
+    forcelimited: &'a mut AutoBool,
+    servo: bool,
     /// Numbers for programs.
     pub user: &'a mut [f64],
+}
+
+impl DraftActuator<'_> {
+    /// Returns whether the actuator's force follows the position or velocity of its joint, as that of a servo does.
+    pub fn is_servo(&self) -> bool {
+        self.servo
+    }
+
+    /// Sets the range of the actuator's force, and enforces it.
+    pub fn limit_force(&mut self, range: [f64; 2]) {
+        *self.forcerange = range;
+        *self.forcelimited = AutoBool::Yes;
+    }
+}
+
+/// A joint of a [`Draft`].
+#[derive(Debug)]
+pub struct DraftJoint<'a> {
+    /// Name.
+    pub name: &'a str,
+    /// Stiffness of the spring, N m/rad or N/m.
+    pub stiffness: &'a mut f64,
+    /// Damping, N m s/rad or N s/m.
+    pub damping: &'a mut f64,
 }
 
 impl std::fmt::Debug for Draft {
@@ -148,6 +177,19 @@ impl Draft {
             .map(|joint| &mut joint.pos)
     }
 
+    /// Returns the joints, in the order of their bodies.
+    pub fn joints(&mut self) -> impl Iterator<Item = DraftJoint<'_>> {
+        let prefix = self.prefix.as_str();
+        let joints = self.document.bodies.iter_mut().flat_map(|body| &mut body.joints);
+        joints.filter_map(move |joint| {
+            Some(DraftJoint {
+                name: joint.name.strip_prefix(prefix)?,
+                stiffness: &mut joint.stiffness,
+                damping: &mut joint.damping,
+            })
+        })
+    }
+
     /// Returns the position of a site in its body, m; `None` if there is no such site.
     pub fn site_pos(&mut self, name: &str) -> Option<&mut Vec3> {
         let mut sites = self.document.bodies.iter_mut().flat_map(|body| &mut body.sites);
@@ -199,6 +241,9 @@ impl Draft {
                 name: actuator.name.strip_prefix(prefix)?,
                 joint: joint.map_or(Some(""), |joint| joint.strip_prefix(prefix))?,
                 gear: &mut actuator.target.gear[0],
+                forcerange: &mut actuator.forcerange,
+                forcelimited: &mut actuator.forcelimited,
+                servo: actuator.law.biastype == BiasType::Affine,
                 user: &mut actuator.user,
             })
         })

@@ -59,7 +59,7 @@ mod xml;
 
 pub use compile::bounding_radius;
 use compile::volume as geom_volume;
-pub use draft::{Draft, DraftActuator, DraftGeom};
+pub use draft::{Draft, DraftActuator, DraftGeom, DraftJoint};
 pub use error::{ErrorKind, LoadError, Location};
 pub use listing::{AttributeInfo, ElementInfo, elements};
 pub use settings::{LengthRange, LengthRangeMode};

@@ -100,7 +100,7 @@ impl CommandPolicy {
             )
         })?;
         let (name, arguments) = words.split_first().ok_or_else(|| {
-            malformed("it is empty; a policy is random, zero, held, ou, pink, oscillators, babbling, watching, an .onnx file, or a command with its arguments")
+            malformed("it is empty; a policy is random, zero, held, ou, pink, color:0.69, color_by_age, oscillators, babbling, watching, an .onnx file, or a command with its arguments")
         })?;
         let mut program = Command::new(name);
         program.args(arguments);

@@ -23,15 +23,18 @@ use thiserror::Error;
 pub use watching::WatchingPolicy;
 
 use crate::env::Env;
-use crate::spaces::{ActionNoise, Noise};
+use crate::spaces::{ActionNoise, Noise, NoiseError};
 
 /// An error of a policy.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum PolicyError {
+    /// The noise needs an age.
+    #[error(transparent)]
+    Noise(#[from] NoiseError),
     /// The command cannot be started.
     #[error(
-        "cannot start the policy {command:?}: {source}; a policy is random, zero, held, ou, pink, oscillators, babbling, watching, an \
+        "cannot start the policy {command:?}: {source}; a policy is random, zero, held, ou, pink, color:0.69, color_by_age, oscillators, babbling, watching, an \
          .onnx file, or a command with its arguments"
     )]
     Start {
@@ -188,12 +191,8 @@ impl NoisePolicy {
 impl Policy for NoisePolicy {
     fn begin(&mut self, env: &mut Env, _episode: u64) -> Result<(), PolicyError> {
         let seed = env.draw_seed();
-        self.running = Some(ActionNoise::new(
-            self.noise,
-            env.action_space(),
-            env.blueprint().dt(),
-            seed,
-        ));
+        let noise = self.noise.at_age(env.config().age)?;
+        self.running = Some(ActionNoise::new(noise, env.action_space(), env.blueprint().dt(), seed));
         Ok(())
     }
 
@@ -215,7 +214,7 @@ pub enum PolicySource {
     Random,
     /// `zero`
     Zero,
-    /// A noise that lasts: `held`, `ou`, `pink` or `oscillators`.
+    /// A noise that lasts: `held`, `ou`, `pink`, `color`, `color_by_age` or `oscillators`.
     Noise(Noise),
     /// `babbling`: learns to touch itself while it acts.
     Babbling,

@@ -3,10 +3,13 @@
 mod noise;
 mod normal;
 mod rng;
+mod spectrum;
 mod values;
 
 pub use noise::{ActionNoise, Noise, NoiseError};
+pub(crate) use noise::{INFANT_EXPONENT, INFANT_WEEKS};
 pub use rng::NumpyRng;
+pub(crate) use spectrum::ColoredNoise;
 pub(crate) use values::Number;
 pub use values::Values;
 pub use values::{Array, ValuesMut};

@@ -6,6 +6,7 @@ use std::str::FromStr;
 
 use thiserror::Error;
 
+use super::spectrum::ColoredNoise;
 use super::{BoxSpace, NumpyRng};
 
 /// Standard deviation of all noises before they are clipped, in half ranges of an action: that of uniform noise. A noise then
@@ -20,6 +21,15 @@ const COUPLING: f64 = 0.5;
 const SPREAD: f64 = 0.25;
 /// Random walk of a phase within a second, rad: movements repeat, but never exactly.
 const DRIFT: f64 = 0.5;
+
+/// Exponents that [`Noise::Color`] may have. Beyond 2 the finite length of a block decides the spectrum.
+const EXPONENTS: std::ops::RangeInclusive<f64> = 0.0..=2.0;
+/// Exponent of infants' movements at birth, and its rise a week (arXiv 2606.16590: wrists and ankles of four infants of 8 to 30 weeks).
+pub(crate) const INFANT_EXPONENT: [f64; 2] = [0.617, 0.00869];
+/// Ages between which it was seen, weeks; it is held before and after.
+pub(crate) const INFANT_WEEKS: [f64; 2] = [8.0, 30.0];
+/// Weeks of a month.
+const WEEKS: f64 = 30.4375 / 7.0;
 
 /// A kind of noise over an action space.
 ///
@@ -41,10 +51,26 @@ pub enum Noise {
         /// The time in which the correlation falls to 1/e, s; 0.2 by default.
         seconds: f64,
     },
-    /// `pink`: noise whose power falls with the inverse of the frequency, between that of the step and one in 2^12 steps, which
+    /// `pink`: noise whose power falls about with the inverse of the frequency, between that of the step and one in 2^12 steps, which
     /// explores better than others in many tasks (O. Eberhard et al., "Pink noise is all you need", 2023). It is the sum of
-    /// processes whose durations are octaves (J. Bernamont, 1937).
+    /// processes whose durations are octaves (J. Bernamont, 1937). Its exponent is 1.14 between a frequency of two in 1,024 steps and a
+    /// quarter of the steps, and 1.03 between 0.5 and 10 Hz at steps of 5 ms; [`Noise::Color`] is exact.
     Pink,
+    /// `color:0.69`: Gaussian noise whose power falls with that power of the frequency: 0 is white, 1 pink, 2 that of a random walk.
+    ///
+    /// The exponent is exact within 0.02, after clipping to the range of an action, between a frequency of two in 1,024 steps and a
+    /// quarter of the steps: 0.4 to 50 Hz at steps of 5 ms. It is that of the actions; a body is a low pass, and its movements are redder.
+    Color {
+        /// The exponent, 0 to 2.
+        exponent: f64,
+    },
+    /// `color_by_age:MONTHS`: [`Noise::Color`] with the exponent that was measured in the movements of infants of an age,
+    /// 0.617 + 0.00869 a week between 8 and 30 weeks, held before and after (arXiv 2606.16590). Without a number, it is that of MIMo's
+    /// age; see [`Noise::at_age`].
+    ColorByAge {
+        /// The age, months; `None` until [`Noise::at_age`] has set it.
+        months: Option<f64>,
+    },
     /// `oscillators`: an oscillator for each number of the action; all are coupled to their mean field (Y. Kuramoto, "Chemical
     /// Oscillations, Waves, and Turbulence", 1984), each with a frequency, an amplitude and a phase of its own.
     Oscillators {
@@ -53,26 +79,40 @@ pub enum Noise {
     },
 }
 
-/// A text that is not a noise.
+/// A text that is not a noise, or a noise that lacks something.
 #[derive(Clone, Debug, Error, PartialEq, Eq)]
-#[error(
-    "{text:?} is not a noise; choose white, held, ou, pink or oscillators, with a number where it may have one: held:0.5 (seconds from 0.001 to 1000), ou:0.2 (seconds), oscillators:1 (hertz)"
-)]
-pub struct NoiseError {
-    text: String,
+#[non_exhaustive]
+pub enum NoiseError {
+    /// The text is not a noise.
+    #[error(
+        "{text:?} is not a noise; choose white, held, ou, pink, color, color_by_age or oscillators, with a number where it may have one: \
+         held:0.5 (seconds from 0.001 to 1000), ou:0.2 (seconds), color:0.69 (exponent from 0 to 2), color_by_age:3 (months from 0 to 24), \
+         oscillators:1 (hertz)"
+    )]
+    Unknown {
+        /// The text.
+        text: String,
+    },
+    /// The colour of an age, without one.
+    #[error("color_by_age is the noise of MIMo's age, and `age` is none; set `age`, or give months: color_by_age:3")]
+    NoAge,
 }
 
 impl FromStr for Noise {
     type Err = NoiseError;
 
     fn from_str(text: &str) -> Result<Self, NoiseError> {
-        let error = || NoiseError { text: text.to_string() };
+        let error = || NoiseError::Unknown { text: text.to_string() };
         let (name, number) = match text.split_once(':') {
             Some((name, number)) => (name, Some(number.parse::<f64>().map_err(|_| error())?)),
             None => (text, None),
         };
         // beyond these bounds a noise is another one: white, or a constant
-        let valid = number.is_none_or(|n| (1e-3..=1e3).contains(&n));
+        let valid = number.is_none_or(|n| match name {
+            "color" => EXPONENTS.contains(&n),
+            "color_by_age" => (0.0..=24.0).contains(&n),
+            _ => (1e-3..=1e3).contains(&n),
+        });
         match (name, number) {
             _ if !valid => Err(error()),
             ("white", None) => Ok(Self::White),
@@ -83,6 +123,8 @@ impl FromStr for Noise {
                 seconds: seconds.unwrap_or(0.2),
             }),
             ("pink", None) => Ok(Self::Pink),
+            ("color", Some(exponent)) => Ok(Self::Color { exponent }),
+            ("color_by_age", months) => Ok(Self::ColorByAge { months }),
             ("oscillators", hertz) => Ok(Self::Oscillators {
                 hertz: hertz.unwrap_or(1.0),
             }),
@@ -98,7 +140,38 @@ impl Display for Noise {
             Self::Held { seconds } => write!(f, "held:{seconds}"),
             Self::OrnsteinUhlenbeck { seconds } => write!(f, "ou:{seconds}"),
             Self::Pink => f.write_str("pink"),
+            Self::Color { exponent } => write!(f, "color:{exponent}"),
+            Self::ColorByAge { months: None } => f.write_str("color_by_age"),
+            Self::ColorByAge { months: Some(months) } => write!(f, "color_by_age:{months}"),
             Self::Oscillators { hertz } => write!(f, "oscillators:{hertz}"),
+        }
+    }
+}
+
+impl Noise {
+    /// Returns the noise for a MIMo of an age, months: `color_by_age` without a number becomes that of the age. Other noises do not change.
+    ///
+    /// # Errors
+    /// `color_by_age` without a number, and no age.
+    pub fn at_age(self, age: Option<f64>) -> Result<Self, NoiseError> {
+        match (self, age) {
+            (Self::ColorByAge { months: None }, None) => Err(NoiseError::NoAge),
+            (Self::ColorByAge { months: None }, age) => Ok(Self::ColorByAge { months: age }),
+            _ => Ok(self),
+        }
+    }
+
+    /// Returns the exponent of a noise of a given colour; `None` for others.
+    pub fn exponent(self) -> Option<f64> {
+        match self {
+            Self::Color { exponent } => Some(exponent),
+            Self::ColorByAge { months } => {
+                let [first, last] = INFANT_WEEKS;
+                // without an age the youngest that was seen
+                let weeks = months.map_or(first, |months| (months * WEEKS).clamp(first, last));
+                Some(INFANT_EXPONENT[0] + INFANT_EXPONENT[1] * weeks)
+            }
+            _ => None,
         }
     }
 }
@@ -137,6 +210,7 @@ enum NoiseProcess {
         decays: Vec<f64>,
         values: Vec<f64>,
     },
+    Colored(ColoredNoise),
     Oscillators(Vec<Oscillator>),
 }
 
@@ -169,8 +243,13 @@ impl ActionNoise {
     pub fn reset(&mut self, seed: u64) {
         self.rng = NumpyRng::seed(seed);
         let (len, step, rng) = (self.space.len(), self.step, &mut self.rng);
+        if let Some(exponent) = self.noise.exponent() {
+            self.process = NoiseProcess::Colored(ColoredNoise::new(exponent, len, seed));
+            return;
+        }
         self.process = match self.noise {
-            Noise::White => NoiseProcess::White,
+            // colours have their process already
+            Noise::White | Noise::Color { .. } | Noise::ColorByAge { .. } => NoiseProcess::White,
             Noise::Held { .. } => NoiseProcess::Held {
                 action: Vec::with_capacity(len),
                 left: 0,
@@ -231,6 +310,10 @@ impl ActionNoise {
                     }
                     sum
                 });
+                place(space, numbers, action);
+            }
+            NoiseProcess::Colored(colored) => {
+                let numbers = colored.next_values().iter().map(|value| DEVIATION * f64::from(*value));
                 place(space, numbers, action);
             }
             NoiseProcess::Oscillators(all) => {
@@ -320,8 +403,17 @@ mod tests {
         product(lag) / product(0)
     }
 
-    fn all() -> [Noise; 5] {
-        ["white", "held", "ou", "pink", "oscillators"].map(|name| name.parse().unwrap())
+    fn all() -> [Noise; 7] {
+        [
+            "white",
+            "held",
+            "ou",
+            "pink",
+            "color:0.69",
+            "color_by_age:3",
+            "oscillators",
+        ]
+        .map(|name| name.parse().unwrap())
     }
 
     #[test]
@@ -377,6 +469,64 @@ mod tests {
         assert!((slope + 1.0).abs() < 0.15, "{slope}");
     }
 
+    /// Slope of the power over the frequency in Welch's periodograms of 1,024 steps, from 2 in 1,024 to a quarter of the steps.
+    fn exponent(noise: Noise, clipped: bool) -> f64 {
+        const WINDOW: usize = 1024;
+        let mut power = vec![0.0; WINDOW / 4 + 1];
+        for seed in 0..6 {
+            let x: Vec<f64> = if clipped {
+                series(noise, seed, 1 << 15)
+            } else {
+                let mut process = ColoredNoise::new(noise.exponent().expect("a colour"), 3, seed);
+                (0..1 << 15).map(|_| f64::from(process.next_values()[1])).collect()
+            };
+            for part in x.windows(WINDOW).step_by(WINDOW / 2) {
+                let mean = part.iter().sum::<f64>() / WINDOW as f64;
+                let hann = |k: usize| 0.5 - 0.5 * pxfm::f_cos(TAU * k as f64 / WINDOW as f64);
+                let tapered: Vec<f64> = part.iter().enumerate().map(|(k, x)| (x - mean) * hann(k)).collect();
+                for (sum, re_im) in power.iter_mut().zip(crate::spaces::spectrum::spectrum(&tapered)) {
+                    *sum += re_im[0] * re_im[0] + re_im[1] * re_im[1];
+                }
+            }
+        }
+        let points: Vec<[f64; 2]> = power
+            .iter()
+            .enumerate()
+            .skip(2)
+            .map(|(k, p)| [(k as f64).ln(), p.ln()])
+            .collect();
+        let n = points.len() as f64;
+        let [x, y] = [0, 1].map(|k| points.iter().map(|p| p[k]).sum::<f64>() / n);
+        let (over, under) = points.iter().fold((0.0, 0.0), |(over, under), p| {
+            (over + (p[0] - x) * (p[1] - y), under + (p[0] - x).powi(2))
+        });
+        -over / under
+    }
+
+    #[test]
+    fn colours_have_the_exponent_that_was_asked_for() {
+        for asked in [0.0, 0.5, 0.69, 0.88, 1.0, 1.5, 2.0] {
+            let noise = Noise::Color { exponent: asked };
+            let [raw, clipped] = [false, true].map(|clipped| exponent(noise, clipped));
+            assert!(
+                (raw - asked).abs() < 0.02 && (clipped - asked).abs() < 0.02,
+                "{asked}: {raw:.3}, clipped {clipped:.3}"
+            );
+        }
+        let pink = exponent(Noise::Pink, true);
+        assert!((pink - 1.14).abs() < 0.03, "pink: {pink:.3}");
+    }
+
+    #[test]
+    fn the_colour_of_an_age_is_held_outside_of_8_to_30_weeks() {
+        let at = |months: f64| Noise::ColorByAge { months: Some(months) }.exponent().expect("a colour");
+        assert!((at(0.0) - 0.6865).abs() < 1e-4 && (at(24.0) - 0.8777).abs() < 1e-4);
+        assert!((at(4.6) - (0.617 + 0.00869 * 4.6 * 30.4375 / 7.0)).abs() < 1e-12);
+        let open: Noise = "color_by_age".parse().expect("a noise");
+        assert_eq!(open.at_age(Some(3.0)), "color_by_age:3".parse());
+        assert!(open.at_age(None).is_err());
+    }
+
     #[test]
     fn what_is_no_noise_is_an_error_that_says_what_is() {
         for text in [
@@ -390,6 +540,10 @@ mod tests {
             "ou:inf",
             "oscillators:1e9",
             "white:2",
+            "color",
+            "color:2.1",
+            "color:-0.1",
+            "color_by_age:25",
         ] {
             let error = text.parse::<Noise>().unwrap_err().to_string();
             assert!(error.contains("pink") && error.contains("held:0.5"), "{error}");

@@ -1,6 +1,8 @@
 //! Shared by the integration tests.
 #![allow(dead_code)] // each test binary uses its part
 
+pub mod milestones;
+
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicUsize, Ordering};
 

@@ -20,6 +20,7 @@ mod invariants;
 mod json;
 #[cfg(all(feature = "eval", feature = "npz"))]
 mod logs;
+mod milestones;
 mod model_change;
 #[cfg(all(feature = "eval", feature = "npz"))]
 mod motion;

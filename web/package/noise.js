@@ -20,7 +20,8 @@ export class ActionNoise {
 
   /**
    * @param {string} noise `white` (new at every step), `held` (for 0.5 s; `held:0.1` for 0.1 s), `ou` (Ornstein-Uhlenbeck; `ou:0.2` with a
-   * correlation of 0.2 s), `pink`, or `oscillators` (coupled, of 1 Hz; `oscillators:2` of 2 Hz)
+   * correlation of 0.2 s), `pink`, `color:0.69` (power falls with that power of the frequency, 0 to 2), `color_by_age:3` (the exponent of
+   * infants of 3 months), or `oscillators` (coupled, of 1 Hz; `oscillators:2` of 2 Hz)
    * @param {Env} env whose actions they are
    * @param {number | bigint} [seed]
    */

@@ -2,7 +2,8 @@
 
 use std::io::{self, Write};
 
-use babybench::mimo::{BodyFigures, GrowthStandard, Lms, Version};
+use babybench::config::StrengthModel;
+use babybench::mimo::{BodyFigures, GrowthStandard, Lms, StrengthRow, Version};
 use babybench::{Env, Model};
 
 /// Ages of the authors' figures, months.
@@ -101,16 +102,43 @@ pub fn write(out: &mut impl Write, env: &Env, age: f64) -> io::Result<()> {
     let mass = (version == Version::V1).then_some(&MASS_V1);
     line("mass", figures.mass, age, mass, "kg")?;
     line("centre of mass, height", figures.center_of_mass, age, None, "m")?;
+    if let Some(sitting) = BodyFigures::crown_rump(model) {
+        line("crown-rump length", sitting, age, None, "m")?;
+        line("crown-rump over length", sitting / figures.stature, age, None, "")?;
+    }
     if let Some(head) = geom_radius(model, "head") {
         line("radius of the head", head, age, Some(&HEAD_RADIUS), "m")?;
     }
     for (name, of, row) in GEARS {
         if let (Some(k), true) = (model.actuator(name), of.is_none_or(|of| of == version)) {
             let gear = model.actuator_gear[k];
-            line(&format!("gear {name}"), gear, strength_age, Some(&row), "N m")?;
+            // with the strength of infants the gears are not the authors'
+            let row = (config.strength == StrengthModel::Volume).then_some(&row);
+            line(&format!("gear {name}"), gear, strength_age, row, "N m")?;
         }
     }
     write_standards(out, figures, age)
+}
+
+/// Writes the greatest torques by both settings of `strength`, and their ratios to the torque of gravity.
+pub fn write_strength(out: &mut impl Write, rows: &[StrengthRow]) -> io::Result<()> {
+    writeln!(out, "  greatest torques, N m, and over that of gravity")?;
+    let columns = ["gravity", "volume", "ratio", "infant", "ratio"];
+    let [gravity, volume, ratio, infant, _] = columns;
+    writeln!(
+        out,
+        "  {:34} {gravity:>9} {volume:>9} {ratio:>7} {infant:>9} {ratio:>7}",
+        ""
+    )?;
+    for row in rows {
+        let ([volume, infant], [r, s]) = (row.torques, row.ratios());
+        writeln!(
+            out,
+            "  {:34} {:>9.5} {volume:>9.5} {r:>7.3} {infant:>9.5} {s:>7.3}",
+            row.name, row.gravity
+        )?;
+    }
+    Ok(())
 }
 
 /// Writes where length and weight lie among infants of an age.

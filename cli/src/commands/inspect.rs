@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use babybench::config::{Compat, Delays};
 use babybench::formats::png::write_png;
-use babybench::mimo::joint_part;
+use babybench::mimo::{joint_part, strength_table};
 use babybench::mjcf_loader::elements;
 use babybench::model::{EqualityKind, TrnType};
 use babybench::physics::collision::PairTable;
@@ -17,7 +17,7 @@ use babybench::{Blueprint, Env, Model};
 use clap::Args;
 
 use super::keys::list_keys;
-use super::{Source, body, read_recording};
+use super::{Source, body, read_recording, sources};
 use crate::arguments::{age, number, png};
 
 /// Arguments of `inspect`.
@@ -37,6 +37,9 @@ pub struct Inspect {
     /// Print every key of the configuration with its values, default and meaning, as Markdown
     #[arg(long, exclusive = true)]
     keys: bool,
+    /// Print strength, proportions and noise of infants over age, and the constants behind them with unit, mark and source, as Markdown
+    #[arg(long, exclusive = true)]
+    sources: bool,
     /// Draw them at a step of this recording (as for replay), with the forces on them
     #[arg(long, value_name = "FILE", requires = "touch")]
     state: Option<PathBuf>,
@@ -56,8 +59,11 @@ impl Inspect {
         if self.keys {
             return Ok(list_keys(&mut stdout().lock())?);
         }
+        if self.sources {
+            return sources::write(&mut stdout().lock());
+        }
         let source = self.source.as_ref();
-        let source = source.ok_or("give --config FILE, or --keys or --mjcf alone")?;
+        let source = source.ok_or("give --config FILE, or --keys, --mjcf or --sources alone")?;
         let mut config = source.read(Compat::Api)?;
         config.age = self.age.or(config.age);
         let blueprint = source.build(config)?;
@@ -69,6 +75,8 @@ impl Inspect {
         write_sizes(&mut out, &env)?;
         if let Some(age) = blueprint.config().age {
             body::write(&mut out, &env, age)?;
+            let assets = blueprint.assets();
+            body::write_strength(&mut out, &strength_table(blueprint.config(), assets)?)?;
         }
         write_joints(&mut out, &env)?;
         write_actuators(&mut out, &env)?;

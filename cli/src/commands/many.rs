@@ -1,5 +1,7 @@
 //! Arguments of commands that run one or many environments with random actions.
 
+use std::error::Error;
+
 use babybench::policy::{NoisePolicy, Policy, RandomPolicy};
 use babybench::spaces::{ActionNoise, Noise};
 use babybench::vector::VectorError;
@@ -47,7 +49,8 @@ pub fn say_threads(envs: &VectorEnv) {
 #[derive(Args)]
 pub struct Babbling {
     /// Random actions: white (new at every step), held (for 0.5 s; held:0.1 for 0.1 s), ou (Ornstein-Uhlenbeck; ou:0.2 with a
-    /// correlation of 0.2 s), pink, or oscillators (coupled, of 1 Hz on average; oscillators:2 of 2 Hz)
+    /// correlation of 0.2 s), pink, color:0.69 (power falls with that power of the frequency), color_by_age (that of infants of
+    /// MIMo's age; color_by_age:3 of 3 months), or oscillators (coupled, of 1 Hz on average; oscillators:2 of 2 Hz)
     #[arg(long, value_name = "NOISE", default_value = "white")]
     noise: Noise,
 }
@@ -67,9 +70,10 @@ impl Babbling {
     }
 
     /// Returns the random actions of many environments.
-    pub fn many(&self, envs: &VectorEnv) -> Result<ManyBabbling, VectorError> {
-        let (space, dt) = (envs.single_action_space(), envs.env(0)?.blueprint().dt());
-        let noises = match self.noise {
+    pub fn many(&self, envs: &VectorEnv) -> Result<ManyBabbling, Box<dyn Error>> {
+        let (space, blueprint) = (envs.single_action_space(), envs.env(0)?.blueprint());
+        let (dt, age) = (blueprint.dt(), blueprint.config().age);
+        let noises = match self.noise.at_age(age)? {
             Noise::White => Vec::new(),
             noise => vec![ActionNoise::new(noise, space, dt, 0); envs.len()],
         };

@@ -18,6 +18,7 @@ mod scene;
 mod score;
 mod senses;
 mod simulate;
+mod sources;
 mod test_installation;
 mod train;
 mod view;

@@ -36,7 +36,7 @@ pub(in crate::mimo) fn blame(
 /// Lists the keys of measurements.
 fn measurements() -> impl Iterator<Item = &'static Key> {
     let growth = Key::named("age").map(|key| key.section);
-    let others = ["age", "strength_age", "touch_grows"];
+    let lengths = ["circumference", "length", "breadth", "diameter"];
     let keys = Config::keys().iter();
-    keys.filter(move |key| Some(key.section) == growth && !others.contains(&key.name))
+    keys.filter(move |key| Some(key.section) == growth && lengths.iter().any(|length| key.name.ends_with(length)))
 }

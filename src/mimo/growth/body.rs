@@ -1,6 +1,7 @@
 //! Trunk, head, arms and legs, which both versions of MIMo have in common.
 
 use super::lengths::Lengths;
+use super::proportions::Stretch;
 use super::shapes::{BodyShapes, Side, long, on_x, on_z, sphere};
 
 /// Slack by which the edge of a rounded part lies within it, m.
@@ -28,10 +29,11 @@ pub(super) fn foot(now: &Lengths, base: &Lengths) -> FootLengths {
     }
 }
 
-/// Adds the trunk, which follows the breadth of the hip.
-pub(super) fn trunk(now: &Lengths, base: &Lengths, out: &mut BodyShapes) {
+/// Adds the trunk, which follows the breadth of the hip; its heights have a factor.
+pub(super) fn trunk(now: &Lengths, base: &Lengths, stretch: Stretch, out: &mut BodyShapes) {
     let h = now.hip_breadth / base.hip_breadth;
-    let capsule = |radius: f64, half: f64, x: f64, z: f64| (long(radius * h, half * h), [x, 0.0, z * h]);
+    let up = h * stretch.trunk;
+    let capsule = |radius: f64, half: f64, x: f64, z: f64| (long(radius * h, half * h), [x, 0.0, z * up]);
     out.geoms(Side::Middle, "hip", [capsule(0.048, 0.043, -0.002, 0.005)]);
     out.geoms(Side::Middle, "lower_body", [capsule(0.053, 0.035, 0.005, -0.008)]);
     let upper = [
@@ -42,12 +44,12 @@ pub(super) fn trunk(now: &Lengths, base: &Lengths, out: &mut BodyShapes) {
     out.geoms(Side::Middle, "upper_body", upper);
     let bodies = [
         ("hip", [0.0; 3]),
-        ("lower_body", [0.002, 0.0, 0.076 * h]),
-        ("upper_body", [-0.002, 0.0, 0.091 * h]),
-        ("head", on_z(0.131 * h + NECK)),
+        ("lower_body", [0.002, 0.0, 0.076 * up]),
+        ("upper_body", [-0.002, 0.0, 0.091 * up]),
+        ("head", on_z(0.131 * up + NECK)),
     ];
     out.bodies(Side::Middle, bodies);
-    let (lower, upper) = (on_z(-0.053 * h), on_z(-0.052 * h));
+    let (lower, upper) = (on_z(-0.053 * up), on_z(-0.052 * up));
     out.joints(
         Side::Middle,
         [("hip_lean1", lower), ("hip_rot1", lower), ("hip_bend1", lower)],
@@ -75,7 +77,7 @@ pub(super) fn head(now: &Lengths, base: &Lengths, out: &mut BodyShapes) {
 }
 
 /// Adds the arms without hands. Returns the radius and half length of the forearm.
-pub(super) fn arms(now: &Lengths, base: &Lengths, out: &mut BodyShapes) -> (f64, f64) {
+pub(super) fn arms(now: &Lengths, base: &Lengths, stretch: Stretch, out: &mut BodyShapes) -> (f64, f64) {
     let h = now.hip_breadth / base.hip_breadth;
     let bone = |l: &Lengths| l.shoulder_elbow_length - l.upper_arm_circumference;
     let upper = (
@@ -89,21 +91,38 @@ pub(super) fn arms(now: &Lengths, base: &Lengths, out: &mut BodyShapes) -> (f64,
     );
     out.geoms(Side::Both, "upper_arm", [(long(upper.0, upper.1), on_z(upper.1))]);
     out.geoms(Side::Both, "lower_arm", [(long(lower.0, lower.1), on_z(lower.1))]);
-    out.bodies(Side::Both, [("upper_arm", [0.0, 0.088 * h + 0.25 * upper.0, 0.09 * h])]);
+    let shoulder = [0.0, 0.088 * h + 0.25 * upper.0, 0.09 * (h * stretch.trunk)];
+    out.bodies(Side::Both, [("upper_arm", shoulder)]);
     out.bodies(Side::Both, [("lower_arm", on_z(2.0 * upper.1))]);
     out.joints(Side::Both, [("shoulder_horizontal", [0.0; 3])]);
     lower
 }
 
-/// Adds the legs with feet, without toes.
-pub(super) fn legs(now: &Lengths, base: &Lengths, foot: &FootLengths, out: &mut BodyShapes) {
-    let h = now.hip_breadth / base.hip_breadth;
+/// Returns the radius and the half length of a thigh.
+fn thigh(now: &Lengths, base: &Lengths) -> (f64, f64) {
     let bone = |l: &Lengths| l.rump_knee_length - l.thigh_circumference;
-    let thigh = (
+    (
         0.037 * now.thigh_circumference / base.thigh_circumference,
         0.0625 * bone(now) / bone(base),
-    );
+    )
+}
+
+/// Returns the lengths of a thigh and of a shank, and the height of a sole, m.
+pub(super) fn leg(now: &Lengths, base: &Lengths) -> [f64; 3] {
+    let (radius, half) = thigh(now, base);
     let shin = now.knee_sole_length / base.knee_sole_length;
+    [2.0 * radius + half, 4.0 * 0.044 * shin, foot(now, base).thickness]
+}
+
+/// Adds the legs with feet, without toes; the lengths of thighs and shanks have a factor.
+pub(super) fn legs(now: &Lengths, base: &Lengths, foot: &FootLengths, stretch: Stretch, out: &mut BodyShapes) {
+    let h = now.hip_breadth / base.hip_breadth;
+    let mut thigh = thigh(now, base);
+    if stretch.leg != 1.0 {
+        // the thickness stays
+        thigh.1 = stretch.leg * (2.0 * thigh.0 + thigh.1) - 2.0 * thigh.0;
+    }
+    let shin = now.knee_sole_length / base.knee_sole_length * stretch.leg;
     let calf = 0.044 * shin;
     out.geoms(
         Side::Both,

@@ -2,7 +2,8 @@
 //!
 //! Sizes follow 18 measurements of AnthroKids (1977), fitted over age; masses follow volumes at the density of the original
 //! parts, and the strength of a motor or muscle follows the volume of the part that carries it. Joint ranges, stiffness,
-//! damping, friction and armature stay those of the original. Below one month four of the curves fall steeply, so the
+//! damping, friction and armature stay those of the original, unless `springs: weight`. With `strength: infant` torques follow ratios to
+//! that of gravity (`ratios`, `maturity`), and with `proportions: measured` trunk and legs those of infants (`proportions`). Below one month four of the curves fall steeply, so the
 //! proportions of a newborn are the least certain.
 //!
 //! Source: MIMo's authors, arXiv 2509.09805 (ICDL 2025), and the code of their repository. Its model has a chest that
@@ -12,19 +13,29 @@
 mod blame;
 mod body;
 mod fingers;
+mod gravity;
 mod lengths;
+mod maturity;
 mod mitten;
+mod proportions;
+mod ratios;
 mod shapes;
 mod strength;
 
 use thiserror::Error;
 
-use crate::config::{Compat, Config, MAX_AGE};
+use crate::assets::AssetSource;
+use crate::config::{Compat, Config, MAX_AGE, SpringModel, StrengthModel};
 use crate::math::Vec3;
+use crate::mimo::error::SceneError;
+use crate::mimo::sources::SourcedConstant;
 use crate::mimo::{EYES, JOINT_PREFIX, ROOT, Version};
 use crate::mjcf_loader::Draft;
 pub(super) use blame::blame;
 use lengths::Lengths;
+pub use maturity::StrengthRow;
+use maturity::{Maturity, without_side};
+use proportions::Stretch;
 use shapes::{BodyShapes, Side};
 use strength::carrier;
 
@@ -69,7 +80,10 @@ pub struct Growth {
     body: BodyShapes,
     /// The body of the strength's age.
     strong: BodyShapes,
+    strength_age: f64,
     camera: f64,
+    /// The strength of infants and springs by weight; `None` if neither is asked for.
+    maturity: Option<Maturity>,
 }
 
 impl Growth {
@@ -88,7 +102,9 @@ impl Growth {
         let base = Lengths::base();
         let now = Lengths::new(age, &config.measurements);
         let grown = |age: f64, config: &Config| {
-            let shapes = shapes(version, &Lengths::new(age, &config.measurements), &base);
+            let lengths = Lengths::new(age, &config.measurements);
+            let stretch = Stretch::of(config.proportions, age, &lengths, &base);
+            let shapes = shapes(version, &lengths, &base, stretch);
             check(&shapes).map(|()| shapes)
         };
         let made = |age: f64| {
@@ -104,8 +120,33 @@ impl Growth {
             version,
             body,
             strong,
+            strength_age,
             camera,
+            maturity: None,
         }))
+    }
+
+    /// Adds the strength of infants and springs by weight, if a configuration asks for them. They follow the weight of the MIMo of `assets`.
+    ///
+    /// # Errors
+    /// Assets that cannot be compiled.
+    pub(super) fn mature(mut self, config: &Config, assets: &dyn AssetSource) -> Result<Self, SceneError> {
+        if config.strength != StrengthModel::Volume || config.springs != SpringModel::Fixed {
+            self.maturity = Some(Maturity::of(config, &self, assets)?);
+        }
+        Ok(self)
+    }
+
+    /// Returns the strength of this age by both settings of `strength`.
+    ///
+    /// # Errors
+    /// Assets that cannot be compiled.
+    pub(super) fn strength_rows(
+        &self,
+        config: &Config,
+        assets: &dyn AssetSource,
+    ) -> Result<Vec<StrengthRow>, SceneError> {
+        Ok(Maturity::of(config, self, assets)?.rows().to_vec())
     }
 
     /// Returns the age of the proportions, months.
@@ -119,7 +160,12 @@ impl Growth {
     /// Parts that the document lacks.
     pub fn apply(&self, draft: &mut Draft) -> Result<(), GrowthError> {
         self.strengthen(draft)?; // first, as it needs the original volumes
-        for geom in &self.body.geoms {
+        self.resize(&self.body, draft)
+    }
+
+    /// Gives a document's MIMo the sizes, masses and places of a body.
+    fn resize(&self, body: &BodyShapes, draft: &mut Draft) -> Result<(), GrowthError> {
+        for geom in &body.geoms {
             for (body, _) in sides(geom.side, geom.body) {
                 let found = draft.geom(&body, geom.index);
                 let grown = found.ok_or_else(|| missing_geom(&body, geom.index))?;
@@ -136,18 +182,18 @@ impl Growth {
             }
             None => Err(missing(format!("{kind} {name:?}"))),
         };
-        for place in &self.body.bodies {
+        for place in &body.bodies {
             for (name, mirrored) in sides(place.side, place.name) {
                 placed(draft.body_pos(&name), "body", &name, mirror(place.pos, mirrored))?;
             }
         }
-        for place in &self.body.joints {
+        for place in &body.joints {
             for (name, mirrored) in sides(place.side, place.name) {
                 let name = format!("{JOINT_PREFIX}{name}");
                 placed(draft.joint_pos(&name), "joint", &name, mirror(place.pos, mirrored))?;
             }
         }
-        for place in &self.body.sites {
+        for place in &body.sites {
             placed(draft.site_pos(place.name), "site", place.name, place.pos)?;
         }
         for name in EYES {
@@ -156,8 +202,35 @@ impl Growth {
         Ok(())
     }
 
-    /// Multiplies the gears of motors and the greatest forces of muscles by the ratio of the volumes of the parts that carry them.
+    /// Gives actuators and joints the strength of the age.
     fn strengthen(&self, draft: &mut Draft) -> Result<(), GrowthError> {
+        let own = draft.joints_below(ROOT);
+        if let Some(maturity) = &self.maturity {
+            maturity.apply(draft, &own);
+        }
+        let ratios = self.volume_ratios(draft)?;
+        let infant = self.maturity.as_ref().is_some_and(Maturity::has_strength);
+        for actuator in draft
+            .actuators()
+            .filter(|actuator| own.iter().any(|joint| joint == actuator.joint))
+        {
+            // the eyes, whose muscles carry no weight, follow their volume in any case
+            if infant && ratios::rule(without_side(actuator.name)).is_some() {
+                continue;
+            }
+            let Some(ratio) = self.volume_ratio(&ratios, actuator.name) else {
+                continue;
+            };
+            *actuator.gear *= ratio * strength::share(actuator.name, self.version);
+            // VMAX, the velocity of the muscles, stays; FMAX of the negative and of the positive muscle follow
+            actuator.user.iter_mut().skip(1).for_each(|fmax| *fmax *= ratio);
+        }
+        Ok(())
+    }
+
+    /// Returns the ratios of the volumes of the geoms of the strength's age to those of a document's original MIMo, each with its body and
+    /// its index among the geoms of that body.
+    fn volume_ratios(&self, draft: &mut Draft) -> Result<Vec<(String, usize, f64)>, GrowthError> {
         let mut ratios = Vec::new();
         for geom in &self.strong.geoms {
             for (body, _) in sides(geom.side, geom.body) {
@@ -170,33 +243,32 @@ impl Growth {
                 *grown.size = old;
             }
         }
-        let own = draft.joints_below(ROOT);
-        for actuator in draft
-            .actuators()
-            .filter(|actuator| own.iter().any(|joint| joint == actuator.joint))
-        {
-            let Some((body, index)) = carrier(actuator.name, self.version) else {
-                continue;
-            };
-            let Some((.., ratio)) = ratios.iter().find(|(b, i, _)| *b == body && *i == index) else {
-                continue;
-            };
-            *actuator.gear *= ratio * strength::share(actuator.name, self.version);
-            // VMAX, the velocity of the muscles, stays; FMAX of the negative and of the positive muscle follow
-            actuator.user.iter_mut().skip(1).for_each(|fmax| *fmax *= ratio);
-        }
-        Ok(())
+        Ok(ratios)
+    }
+
+    /// Returns the ratio of the volume of the part that carries an actuator; `None` for actuators that are not MIMo's.
+    fn volume_ratio(&self, ratios: &[(String, usize, f64)], actuator: &str) -> Option<f64> {
+        let (body, index) = carrier(actuator, self.version)?;
+        let found = ratios.iter().find(|(b, i, _)| *b == body && *i == index);
+        found.map(|(.., ratio)| *ratio)
     }
 }
 
+/// Lists the constants of strength and proportions.
+pub(super) fn constants() -> Vec<SourcedConstant> {
+    let mut all = maturity::constants();
+    all.extend(proportions::constants());
+    all
+}
+
 /// Returns the sizes and positions of a version of MIMo with given lengths.
-fn shapes(version: Version, now: &Lengths, base: &Lengths) -> BodyShapes {
+fn shapes(version: Version, now: &Lengths, base: &Lengths, stretch: Stretch) -> BodyShapes {
     let mut out = BodyShapes::default();
     let foot = body::foot(now, base);
-    body::trunk(now, base, &mut out);
+    body::trunk(now, base, stretch, &mut out);
     body::head(now, base, &mut out);
-    let forearm = body::arms(now, base, &mut out);
-    body::legs(now, base, &foot, &mut out);
+    let forearm = body::arms(now, base, stretch, &mut out);
+    body::legs(now, base, &foot, stretch, &mut out);
     match version {
         Version::V1 => {
             mitten::hands(now, base, forearm, &mut out);

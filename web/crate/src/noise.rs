@@ -18,6 +18,7 @@ impl ActionNoise {
     #[wasm_bindgen(constructor)]
     pub fn new(noise: &str, low: Vec<f32>, high: Vec<f32>, step: f64, seed: u64) -> Result<ActionNoise, JsValue> {
         let noise: Noise = noise.parse().map_err(js::error)?;
+        let noise = noise.at_age(None).map_err(js::error)?;
         Ok(Self {
             noise: babybench::spaces::ActionNoise::new(noise, &BoxSpace::new(low, high), step, seed),
             action: Vec::new(),
