@@ -287,7 +287,7 @@ fn no_key_is_without_effect() {
             "delay_unit" => continue,   // with delays, in the tests of senses
             "delay_by_age" => &["True"],
             _ if name.starts_with("delay_") => &["2"],
-            "noise_motor_color" => continue, // with `noise_motor`, in the tests of senses
+            "noise_motor_color" => continue, // with `noise_motor`, in the tests of actuation
             _ if name.starts_with("noise_") => &["0.1"],
             _ if name.starts_with("lock_") => &["True"],
             _ => &["False"],

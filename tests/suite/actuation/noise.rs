@@ -1,8 +1,8 @@
 //! The noise of motors.
 
 use crate::common::*;
-use babybench::Config;
 use babybench::config::{ActuationModel, Behavior, Scene};
+use babybench::{Config, Env};
 
 fn noisy(deviation: f64, actuation_model: ActuationModel) -> Config {
     let mut config = free(Behavior::None, Scene::Base);
@@ -58,4 +58,36 @@ fn noise_of_motors_goes_on_as_before_after_a_snapshot() {
         ends.push(bits(env.state()));
     }
     assert_eq!(ends[0], ends[1]);
+}
+
+/// A coloured noise continues from a snapshot, in the middle of a block, and differs from the white one.
+#[test]
+fn coloured_motor_noise_continues_from_a_snapshot() {
+    let config = |motor_color| {
+        let mut config = free(Behavior::None, Scene::Base);
+        (config.noise.motor, config.noise.motor_color) = (0.3, motor_color);
+        config
+    };
+    let run = |env: &mut Env, steps: usize| {
+        let action = vec![0.5; env.action_space().len()];
+        for _ in 0..steps {
+            env.step(&action).expect("steps");
+        }
+        env.state().qpos.clone()
+    };
+    let ends = [None, Some(0.7), Some(1.4)].map(|color| {
+        let mut env = Env::new(config(color)).expect("valid");
+        env.reset(Some(3)).expect("resets");
+        run(&mut env, 40);
+        let snapshot = env.snapshot();
+        let end = run(&mut env, 40);
+        let mut other = env.blueprint().env().expect("the same");
+        other.restore(&snapshot).expect("fits");
+        assert_eq!(run(&mut other, 40), end, "{color:?}");
+        env.reset(Some(3)).expect("resets");
+        run(&mut env, 40);
+        assert_eq!(run(&mut env, 40), end, "{color:?}: again from the seed");
+        end
+    });
+    assert!(ends[0] != ends[1] && ends[1] != ends[2]);
 }
