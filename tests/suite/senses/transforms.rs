@@ -16,6 +16,7 @@ fn noise_has_its_deviation_and_the_generator_of_the_environment() {
         vestibular: 2.0,
         vision: 8.0,
         motor: 0.0,
+        motor_color: None,
     };
     let noisy = Config { noise, ..everything() };
     let run = |config: &Config, seed: u64| {
