@@ -82,7 +82,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             env.blueprint().init_qpos().to_vec(),
             env.blueprint().init_qvel().to_vec(),
         );
-        env.reset_to(&qpos, &qvel)?;
+        env.by_hand().reset_to(&qpos, &qvel)?;
         let scenery = env.blueprint().scenery()?;
         println!(
             "{scene}: both eyes 64 x 64, settled: {:.3} ms; corner 480 x 480: {:.2} ms",

@@ -324,7 +324,7 @@ fn less(what: &str, config: &Config, other: Config) {
         let (truncated, looks) = (step.truncated, step.info.steps.is_multiple_of(10));
         if looks {
             // draws where that waits, and nothing otherwise
-            black_box(env.look().expect("a renderer"));
+            black_box(env.senses_mut().look().expect("a renderer"));
         }
         if truncated {
             env.reset(Some(0)).expect("no divergence");

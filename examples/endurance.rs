@@ -294,7 +294,7 @@ fn start(config: Config, number: u64, seed: u64) -> Result<Starts> {
         let (mut qpos, mut qvel) = (position.clone(), velocity.clone());
         absurd(&mut rng, &mut qpos, &mut qvel);
         let begun = time();
-        let mut sound = env.reset_to(&qpos, &qvel).is_ok();
+        let mut sound = env.by_hand().reset_to(&qpos, &qvel).is_ok();
         for _ in 0..5 {
             sound = sound && env.step(&ends).is_ok();
             if sound {

@@ -58,7 +58,7 @@ pub fn main() -> Result<(), Box<dyn std::error::Error>> {
         .collect();
     for episode in 0..3 {
         env.reset(Some(episode))?;
-        while !env.over() {
+        while !env.last_step().over() {
             env.step(&arm)?;
         }
         println!("episode {episode}: {}", env.info().to_json());

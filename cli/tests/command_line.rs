@@ -308,10 +308,14 @@ fn all_behaviors_and_actuation_models_run_from_the_command_line() {
             assert!(ran.contains("\"steps\": 5"), "{ran}");
             let inspected = works(folder.path(), &["inspect", "--config", file]);
             let env = env(config);
-            for name in env.actuation().action_names(env.model()) {
+            for name in env.blueprint().actuation().action_names(env.model()) {
                 assert!(inspected.contains(&name), "{name} is not explained");
             }
-            for entry in env.senses().proprioception().entries(env.model(), env.actuation()) {
+            for entry in env
+                .senses()
+                .proprioception()
+                .entries(env.model(), env.blueprint().actuation())
+            {
                 let line = format!(
                     "{:4}..{:4} {:10} {}",
                     entry.range.start,

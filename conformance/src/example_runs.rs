@@ -81,7 +81,8 @@ impl ExampleRun {
     /// The run starts at the recorded settled state, with the recorded start actions.
     pub fn run(&self, blueprint: &Blueprint) -> Vec<Moment> {
         let mut env = blueprint.env().expect("the environment builds");
-        env.reset_to(&numbers(&self.json["init_qpos"]), &numbers(&self.json["init_qvel"]))
+        env.by_hand()
+            .reset_to(&numbers(&self.json["init_qpos"]), &numbers(&self.json["init_qvel"]))
             .expect("a recorded state");
         for action in self.json["reset_actions"].as_array().expect("a list") {
             let action: Vec<f32> = numbers(action).iter().map(|&v| v as f32).collect();

@@ -133,7 +133,7 @@ struct Spent {
 /// Measures what our pictures of a state cost.
 fn spent(env: &mut Env, qpos: &[f64], eyes: bool) -> Result<Spent, String> {
     let qvel = vec![0.0; env.state().qvel.len()];
-    env.reset_to(qpos, &qvel).map_err(|e| e.to_string())?;
+    env.by_hand().reset_to(qpos, &qvel).map_err(|e| e.to_string())?;
     let scenery = env.blueprint().scenery().map_err(|e| e.to_string())?;
     let (names, size, repeat): (&[&str], _, _) = if eyes {
         (&["eye_left", "eye_right"], 64, 60)

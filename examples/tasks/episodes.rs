@@ -77,7 +77,7 @@ fn run(env: &mut Env, plan: &Plan, episode: &Episode<'_>) -> Result<Outcome, Env
         let desired: Vec<f64> = (0..env.goal().desired.len())
             .map(|k| f64::from(u8::from(k == goal)))
             .collect();
-        env.set_goal(&desired)?;
+        env.by_hand().set_goal(&desired)?;
     }
     let design: &Design = &plan.design;
     let space = env.action_space().clone();

@@ -177,8 +177,8 @@ impl Plan {
     }
 }
 
-/// Returns how far he has turned, -1 to 1, and in which direction he feels his weight, m/s^2 times 0.1: what brought him onto his side does not bring
-/// him onto his belly.
+/// Returns how far he has turned, -1 to 1, and in which direction he feels his weight, m/s^2 times 0.1: what brought him onto his side does
+/// not bring him onto his belly.
 fn turned() -> Vec<Feature> {
     let way = Feature {
         offset: -1.0,
@@ -190,7 +190,7 @@ fn turned() -> Vec<Feature> {
 
 /// Finds the joint of each number of an action; muscles have a block of numbers after another.
 fn drives(env: &Env) -> Result<Vec<Drive>, Box<dyn std::error::Error>> {
-    let (model, actuators) = (env.model(), env.actuation().actuators());
+    let (model, actuators) = (env.model(), env.blueprint().actuation().actuators());
     let senses = env.senses().proprioception();
     let drive = |action: usize| {
         let joint = &model.jnt_name[model.actuator_trnid[actuators[action % actuators.len()]]];

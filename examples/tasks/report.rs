@@ -163,7 +163,7 @@ fn episode(env: &mut Env, policy: &mut dyn Policy, seed: u64) -> Result<(f64, Op
     policy.begin(env, seed)?;
     let (mut action, mut reward) = (Vec::new(), 0.0);
     let (dt, mut success) = (env.blueprint().dt(), None);
-    while !env.over() {
+    while !env.last_step().over() {
         policy.act(env, &mut action)?;
         let step = env.step(&action)?;
         reward += step.reward;

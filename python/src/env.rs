@@ -69,7 +69,7 @@ impl Env {
             return fresh_blind(py, &inner.env);
         }
         if !inner.lazy && inner.env.senses().vision_is_lazy() {
-            detached(py, || inner.env.look().map(drop))?;
+            detached(py, || inner.env.senses_mut().look().map(drop))?;
         }
         let Some(views) = &mut inner.views else {
             return fresh(py, &inner.env);
@@ -88,7 +88,7 @@ impl Env {
         let env = detached(py, || shared.env())?;
         let views = if views { Some(Views::new(py, &env, lazy)?) } else { None };
         let inner = Inner {
-            second: env.second_infant(),
+            second: env.blueprint().second_infant(),
             felt: Vec::new(),
             env,
             blueprint,
@@ -128,7 +128,9 @@ impl Env {
         qpos: &Bound<'py, PyAny>,
         qvel: &Bound<'py, PyAny>,
     ) -> PyResult<Bound<'py, PyDict>> {
-        self.placed(py, [qpos, qvel], |env, qpos, qvel| env.reset_to(qpos, qvel).map(drop))
+        self.placed(py, [qpos, qvel], |env, qpos, qvel| {
+            env.by_hand().reset_to(qpos, qvel).map(drop)
+        })
     }
 
     fn set_state<'py>(
@@ -137,7 +139,9 @@ impl Env {
         qpos: &Bound<'py, PyAny>,
         qvel: &Bound<'py, PyAny>,
     ) -> PyResult<Bound<'py, PyDict>> {
-        self.placed(py, [qpos, qvel], |env, qpos, qvel| env.set_state(qpos, qvel).map(drop))
+        self.placed(py, [qpos, qvel], |env, qpos, qvel| {
+            env.by_hand().set_state(qpos, qvel).map(drop)
+        })
     }
 
     fn set_mocap(&self, body: &str, pos: [f64; 3], quat: [f64; 4]) -> PyResult<()> {
@@ -149,7 +153,7 @@ impl Env {
     fn refresh<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let mut guard = self.guard()?;
         let inner = guard.open()?;
-        detached(py, || inner.env.refresh().map(drop))?;
+        detached(py, || inner.env.by_hand().refresh().map(drop))?;
         Self::observed(py, inner)
     }
 
@@ -195,7 +199,7 @@ impl Env {
     fn eyes<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let mut guard = self.guard()?;
         let inner = guard.open()?;
-        detached(py, || inner.env.look().map(drop))?;
+        detached(py, || inner.env.senses_mut().look().map(drop))?;
         let Some(views) = inner.views.as_mut().filter(|_| inner.lazy) else {
             return fresh_images(py, &inner.env);
         };
@@ -312,12 +316,12 @@ impl Env {
     }
 
     fn seed_action_space(&self, seed: u64) -> PyResult<()> {
-        self.guard()?.open()?.env.seed_action_space(seed);
+        self.guard()?.open()?.env.by_hand().seed_action_space(seed);
         Ok(())
     }
 
     fn draw_from(&self, drawn: u64) -> PyResult<()> {
-        self.guard()?.open()?.env.draw_from(drawn);
+        self.guard()?.open()?.env.by_hand().draw_from(drawn);
         Ok(())
     }
 
@@ -416,7 +420,7 @@ impl Env {
         })?;
         let mut guard = self.guard()?;
         let inner = guard.open()?;
-        detached(py, || inner.env.swap_facial_expression(face))?;
+        detached(py, || inner.env.mimo_mut().swap_facial_expression(face))?;
         // the earlier ones would continue to draw the old one
         inner.painters = Painters::default();
         inner.blueprint = Py::new(
@@ -432,10 +436,10 @@ impl Env {
     fn set_age<'py>(&self, py: Python<'py>, age: Option<f64>) -> PyResult<Bound<'py, PyDict>> {
         let mut guard = self.guard()?;
         let inner = guard.open()?;
-        detached(py, || inner.env.set_age(age))?;
+        detached(py, || inner.env.mimo_mut().set_age(age))?;
         // what was made of the body as it was
         inner.painters = Painters::default();
-        inner.second = inner.env.second_infant();
+        inner.second = inner.env.blueprint().second_infant();
         inner.blueprint = Py::new(
             py,
             Blueprint {
@@ -471,7 +475,9 @@ impl Env {
         let mut guard = self.guard()?;
         let env = &mut guard.open()?.env;
         let report = target_of(target, |target| {
-            env.lock(target, angle).map_err(IntoException::into_exception)
+            env.mimo_mut()
+                .lock(target, angle)
+                .map_err(IntoException::into_exception)
         })?;
         report_dict(py, env, &report)
     }
@@ -480,7 +486,7 @@ impl Env {
         let mut guard = self.guard()?;
         let env = &mut guard.open()?.env;
         let report = target_of(target, |target| {
-            env.unlock(target).map_err(IntoException::into_exception)
+            env.mimo_mut().unlock(target).map_err(IntoException::into_exception)
         })?;
         report_dict(py, env, &report)
     }
@@ -515,7 +521,7 @@ impl Env {
         let entries = env
             .senses()
             .proprioception()
-            .entries(env.model(), env.actuation())
+            .entries(env.model(), env.blueprint().actuation())
             .into_iter();
         Ok(entries
             .map(|e| (e.component.name(), e.name, e.range.start, e.range.end))

@@ -74,13 +74,13 @@ pub fn change(env: &mut babybench::Env, changes: &Bound<'_, PyDict>) -> PyResult
             }
         });
     };
-    env.change_model(edit).map_err(IntoException::into_exception)
+    env.model_mut().change(edit).map_err(IntoException::into_exception)
 }
 
 /// Returns what was changed, by name.
 pub fn changes<'py>(py: Python<'py>, env: &babybench::Env) -> PyResult<Bound<'py, PyDict>> {
     let dict = PyDict::new(py);
-    for name in env.model_changes() {
+    for name in env.blueprint().model_changes() {
         dict.set_item(name, value(py, env, name)?)?;
     }
     Ok(dict)
@@ -99,7 +99,7 @@ pub fn array<'py>(py: Python<'py>, env: &babybench::Env, name: &str) -> PyResult
 fn value<'py>(py: Python<'py>, env: &babybench::Env, name: &str) -> PyResult<Bound<'py, PyAny>> {
     let wanted = field_name(name);
     let mut found = None;
-    numbers_of(&env.model_arrays(), |field| {
+    numbers_of(&env.blueprint().model_arrays(), |field| {
         if field.name == wanted {
             found = Some(match field.values {
                 [single] if name.starts_with("opt.") => shaped(py, &[*single], &[]),

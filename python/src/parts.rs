@@ -153,7 +153,7 @@ impl Parts {
 
     #[getter]
     fn cost(&self) -> PyResult<f64> {
-        self.with(|env, _| Ok(env.actuation().cost(env.model(), env.state())))
+        self.with(|env, _| Ok(env.blueprint().actuation().cost(env.model(), env.state())))
     }
 
     #[getter]

@@ -30,7 +30,7 @@ pub fn put_terms(dict: &Bound<'_, PyDict>, terms: &[f64]) -> PyResult<()> {
 pub fn set_goal(env: &mut Env, desired: &Bound<'_, PyAny>) -> PyResult<()> {
     let mut goal = Vec::new();
     read("desired_goal", desired, &[env.goal().desired.len()], &mut goal)?;
-    env.set_goal(&goal).map_err(IntoException::into_exception)
+    env.by_hand().set_goal(&goal).map_err(IntoException::into_exception)
 }
 
 /// Computes the reward of each row of achieved goals, desired goals and terms.
@@ -57,7 +57,8 @@ pub fn compute_reward<'py>(
         desired,
         terms,
     };
-    env.compute_reward(goals, &mut rewards)
+    env.blueprint()
+        .compute_reward(goals, &mut rewards)
         .map_err(|e| PyValueError::new_err(e.to_string()))?;
     Ok(PyArray1::from_vec(py, rewards))
 }

@@ -16,8 +16,8 @@ use crate::env::engines::Engines;
 use crate::env::paths::Paths;
 use crate::env::pipeline::effective;
 use crate::env::snapshot::Identity;
-use crate::env::task::{TaskSizes, of_config};
-use crate::env::{Env, EnvError, Task};
+use crate::env::task::{TaskSizes, of_config, rewards};
+use crate::env::{Env, EnvError, Goal, GoalError, Task};
 use crate::mimo::scene_assets;
 use crate::model::Model;
 use crate::physics::{Engine, Params, Shared};
@@ -307,6 +307,35 @@ impl Blueprint {
     /// Returns the task, which environments copy.
     pub fn task(&self) -> &dyn Task {
         &*self.task
+    }
+
+    /// Returns the actuation model.
+    pub fn actuation(&self) -> &dyn Actuation {
+        &*self.tables.actuation
+    }
+
+    /// Computes the reward of each row of goals, like Gymnasium-Robotics' `compute_reward`, for as many rows as `out` has, with desired
+    /// goals of the program's choice. `terms` ([`Goal::terms`]) are those of the steps in which the goals were achieved. For the goals of
+    /// a step it is the reward of that step, to the bit.
+    ///
+    /// ```
+    /// use babybench::config::Behavior;
+    /// use babybench::{Env, env::Goal};
+    /// use babybench::Config;
+    ///
+    /// let mut env = Env::new(Config::of(Behavior::Standup))?;
+    /// env.reset(Some(0))?;
+    /// let reward = env.step(&vec![0.5; env.action_space().len()])?.reward;
+    /// let mut found = [0.0];
+    /// env.blueprint().compute_reward(env.goal(), &mut found)?;
+    /// assert_eq!(found, [reward]);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    /// Arrays without a row of the task's length for each reward.
+    pub fn compute_reward(&self, goals: Goal<'_>, out: &mut [f64]) -> Result<(), GoalError> {
+        rewards(&*self.task, self.sizes, goals, out)
     }
 
     /// Returns the tables that all its environments share.

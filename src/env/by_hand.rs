@@ -3,8 +3,10 @@
 use super::check_vector;
 use super::outcome::clear;
 use super::task::ActionTiming;
-use crate::env::{Env, EnvError, Observation, Snapshot};
+use crate::env::{Env, EnvError, EnvProbe, EnvStage, Observation, Snapshot, Task};
 use crate::math::{Quat, Vec3};
+use crate::physics::Probe;
+use crate::spaces::NumpyRng;
 
 /// The parts of resets and steps of an environment, one by one: [`Env::by_hand`].
 ///
@@ -34,7 +36,7 @@ use crate::math::{Quat, Vec3};
 /// ```
 #[derive(Debug)]
 pub struct ManualControl<'a> {
-    env: &'a mut Env,
+    pub(super) env: &'a mut Env,
 }
 
 impl Env {
@@ -56,7 +58,7 @@ impl<'a> ManualControl<'a> {
     /// let config = Config { behavior, vision_active: false, ..Config::default() };
     /// let (mut one, mut other) = (Env::new(config.clone())?, Env::new(config)?);
     /// let (mut actions, mut action) = (Vec::new(), Vec::new());
-    /// other.seed_action_space(7);
+    /// other.by_hand().seed_action_space(7);
     /// for _ in 0..10 {
     ///     other.sample_action(&mut action);
     ///     actions.extend_from_slice(&action);
@@ -86,16 +88,16 @@ impl<'a> ManualControl<'a> {
         Ok(env.observation())
     }
 
-    /// Restores a snapshot like [`Env::restore`], and computes what it does not hold like [`Env::refresh`]: poses, contacts, touch, pain
-    /// and images. The rest of the observation remains the original's, so a policy that reads it continues with the same bits. After
-    /// [`Env::refresh`] alone the observation is that of the current state, with another acceleration of the head.
+    /// Restores a snapshot like [`Env::restore`], and computes what it does not hold like [`ManualControl::refresh`]: poses, contacts,
+    /// touch, pain and images. The rest of the observation remains the original's, so a policy that reads it continues with the same bits.
+    /// After [`ManualControl::refresh`] alone the observation is that of the current state, with another acceleration of the head.
     ///
     /// # Errors
-    /// Those of [`Env::restore`], which change nothing; those of [`Env::refresh`].
+    /// Those of [`Env::restore`], which change nothing; those of [`ManualControl::refresh`].
     pub fn resume(self, snapshot: &Snapshot) -> Result<Observation<'a>, EnvError> {
         let env = self.env;
         env.restore(snapshot)?;
-        env.refresh()?;
+        env.by_hand().refresh()?;
         // the values sensed now replace those of the snapshot
         let picture = env.senses.picture;
         env.restore(snapshot)?;
@@ -121,27 +123,6 @@ impl<'a> ManualControl<'a> {
         self.env.action_delay.rest();
         let phase = self.env.phase();
         self.env.senses.reset(phase);
-    }
-
-    /// Computes everything at positions (nq) and velocities (nv), without sensing it. Time, controls, locks and the start of the solver
-    /// remain.
-    ///
-    /// # Errors
-    /// Wrong lengths or numbers that are not finite, which change nothing; a state from which the simulation diverges.
-    pub fn forward(&mut self, qpos: &[f64], qvel: &[f64]) -> Result<(), EnvError> {
-        self.set_position(qpos, qvel)?;
-        self.env.senses.forget_picture();
-        let forward = self.env.play().scene.forward();
-        self.env.episode.ready = forward.is_ok();
-        forward
-    }
-
-    /// Sets positions (nq) and velocities (nv) for the next physics step, without computing anything from them.
-    ///
-    /// # Errors
-    /// Wrong lengths or numbers that are not finite, which change nothing.
-    pub fn set_position(&mut self, qpos: &[f64], qvel: &[f64]) -> Result<(), EnvError> {
-        self.env.set_position(qpos, qvel)
     }
 
     /// Sets the activations ([`act`](crate::physics::State::act)). Those of MIMo's muscles are in the order of the action, each clipped
@@ -207,20 +188,6 @@ impl<'a> ManualControl<'a> {
         self.env.track();
     }
 
-    /// Shows the scene at positions (nq) and velocities (nv) as a step: computes poses, contacts and forces there, senses, calls
-    /// [`ManualControl::track`], computes outcome and reward, and counts a step in the information. Nothing moves: neither action nor time act on
-    /// positions, and accelerations are those with which the scene would continue from there.
-    ///
-    /// # Errors
-    /// As [`ManualControl::forward`] and [`ManualControl::observe`].
-    pub fn show(&mut self, qpos: &[f64], qvel: &[f64]) -> Result<(), EnvError> {
-        self.env.senses.prepare();
-        self.forward(qpos, qvel)?;
-        self.observe()?;
-        self.env.finish_step();
-        Ok(())
-    }
-
     /// Moves a body with `mocap="true"` to a position (world, m) and an orientation (w, x, y, z, of any nonzero length), from the next
     /// step on. The body stays there until it is moved again or a reset puts it back where the document has it. Paths of
     /// [`Config::mocap_motion`](crate::Config::mocap_motion) take precedence: they set the poses of their bodies in every step.
@@ -275,5 +242,47 @@ impl<'a> ManualControl<'a> {
         let env = &mut *self.env;
         env.task.forget();
         clear(&*env.task, &mut env.info);
+    }
+
+    /// Returns the task.
+    pub fn task(&self) -> &dyn Task {
+        &*self.env.task
+    }
+
+    /// Sets the desired goal and recomputes reward and outcome.
+    ///
+    /// # Errors
+    /// A wrong length or numbers that are not finite, which change nothing.
+    pub fn set_goal(&mut self, desired: &[f64]) -> Result<(), EnvError> {
+        check_vector("desired_goal", desired, self.env.goals.desired.len())?;
+        self.env.physics.check_shape()?;
+        self.env.goals.desired.copy_from_slice(desired);
+        self.env.judge();
+        Ok(())
+    }
+
+    /// Seeds the generator of [`Env::sample_action`] and of start actions.
+    pub fn seed_action_space(&mut self, seed: u64) {
+        self.env.rng = NumpyRng::seed(seed);
+    }
+
+    /// Moves the generator of random choices to its position after `drawn` numbers.
+    #[cfg(all(feature = "eval", feature = "npz"))]
+    pub fn draw_from(&mut self, drawn: u64) {
+        self.env.rng = NumpyRng::at(self.env.rng.seed_value(), drawn);
+    }
+
+    /// Installs or removes a probe that is called when each stage of a step starts and when the step is done.
+    pub fn set_probe(&mut self, probe: Option<EnvProbe>) {
+        self.env
+            .physics
+            .own_engine()
+            .set_probe(probe.clone().map(|probe| -> Probe {
+                Box::new(move |stage| {
+                    // between the physics steps the actuation works
+                    probe(Some(stage.map_or(EnvStage::Actuation, EnvStage::Physics)));
+                })
+            }));
+        self.env.probe = probe;
     }
 }

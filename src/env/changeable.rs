@@ -5,7 +5,7 @@ use thiserror::Error;
 use crate::model::Arrays;
 use crate::physics::{Params, Row};
 
-/// An error of [`Env::change_model`](crate::Env::change_model).
+/// An error of [`ModelMut::change`](crate::env::ModelMut::change).
 #[derive(Clone, Debug, Error, PartialEq)]
 #[non_exhaustive]
 pub enum ModelChangeError {
@@ -48,7 +48,7 @@ pub enum ModelChangeError {
 /// Lists the numbers that a program may change: first those of the parameters, with their name there, then those of the model.
 macro_rules! changeable {
     (parameters { $($own:literal = $($path:ident).+, $field:ident;)* } model { $($name:literal = $($at:ident).+;)* }) => {
-        /// The names of the arrays that [`Env::change_model`](crate::Env::change_model) may change, as in [`Arrays`].
+        /// The names of the arrays that [`ModelMut::change`](crate::env::ModelMut::change) may change, as in [`Arrays`].
         pub const CHANGEABLE: &[&str] = &[$($own,)* $($name),*];
 
         pub(super) fn rows(arrays: &Arrays) -> Vec<&[f64]> {

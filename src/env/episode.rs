@@ -4,6 +4,7 @@ use crate::config::Compat;
 use crate::env::outcome::clear;
 use crate::env::task::Goals;
 use crate::env::{Env, EnvError, Observation, Task, TaskScene};
+use crate::spaces::NumpyRng;
 
 /// The scene of an environment together with its task.
 pub(super) struct StagedTask<'a> {
@@ -33,13 +34,14 @@ impl Env {
     /// random actions. The information of a reset is empty.
     ///
     /// Under `compat: api` a seed reseeds every random choice. Under `compat: reference` it is ignored, because the start actions come
-    /// from the generator of the action space: see [`Env::seed_action_space`].
+    /// from the generator of the action space: see
+    /// [`seed_action_space`](crate::env::ManualControl::seed_action_space).
     ///
     /// # Errors
     /// The simulation diverged.
     pub fn reset(&mut self, seed: Option<u64>) -> Result<Observation<'_>, EnvError> {
         if let (Some(seed), Compat::Api) = (seed, self.config().compat) {
-            self.seed_action_space(seed);
+            self.rng = NumpyRng::seed(seed);
         }
         self.end_episode();
         let StagedTask { mut scene, task, .. } = self.play();
@@ -60,7 +62,7 @@ impl Env {
             engine,
             last_call,
             base,
-            actuation: &*self.actuation,
+            actuation: self.blueprint.actuation(),
             paths: self.blueprint.paths(),
             delay: Some(&mut self.action_delay),
             start: [self.blueprint.init_qpos(), self.blueprint.init_qvel()],
@@ -72,18 +74,6 @@ impl Env {
             goals: &mut self.goals,
             applied: &mut self.applied,
         }
-    }
-
-    /// Starts an episode from given positions (nq) and velocities (nv) instead of the settled state, without start actions. The task
-    /// chooses a goal.
-    ///
-    /// # Errors
-    /// Wrong lengths, numbers that are not finite, or a state from which the simulation diverges. The episode is then over.
-    pub fn reset_to(&mut self, qpos: &[f64], qvel: &[f64]) -> Result<Observation<'_>, EnvError> {
-        self.end_episode();
-        self.play().scene.place(qpos, qvel)?;
-        self.begin_episode()?;
-        Ok(self.observation())
     }
 
     /// Returns whether a step may follow: there was a reset, and nothing has diverged since.

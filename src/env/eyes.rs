@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use crate::env::senses::PictureStatus;
-use crate::env::{Env, EnvError, Observation, Senses};
+use crate::env::{Env, EnvError, Observation, Senses, SensesMut};
 use crate::physics::State;
 use crate::render::{ImageBuffers, RenderRequest, SharedGpu, draw_on};
 use crate::sensors::EyeImages;
@@ -49,7 +49,7 @@ impl Senses {
     }
 }
 
-impl Env {
+impl<'a> SensesMut<'a> {
     /// Draws the picture of the last observation, if it is still to be drawn ([`Config::vision_lazy`](crate::Config::vision_lazy)), and
     /// returns the whole observation. The picture has the bits that it has without `vision_lazy`, whatever was requested before. Until
     /// then the observation has no images, and if a step comes first the picture is lost. Otherwise nothing is drawn.
@@ -64,18 +64,19 @@ impl Env {
     /// for _ in 0..9 {
     ///     assert!(env.step(&action)?.observation.eye_left.is_none());
     /// }
-    /// assert!(env.look()?.eye_left.is_some());
+    /// assert!(env.senses_mut().look()?.eye_left.is_some());
     /// assert_eq!(env.senses().pictures_drawn(), 1);
     /// # Ok::<(), babybench::EnvError>(())
     /// ```
     ///
     /// # Errors
     /// As the renderer.
-    pub fn look(&mut self) -> Result<Observation<'_>, EnvError> {
-        if self.senses.picture == PictureStatus::Waiting {
-            draw_eyes([&mut *self])?;
+    pub fn look(self) -> Result<Observation<'a>, EnvError> {
+        let env = self.env;
+        if env.senses.picture == PictureStatus::Waiting {
+            draw_eyes([&mut *env])?;
         }
-        Ok(self.observation())
+        Ok(env.observation())
     }
 }
 

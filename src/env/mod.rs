@@ -2,7 +2,6 @@
 
 mod access;
 mod action_delay;
-mod age;
 mod blueprint;
 mod by_hand;
 mod changeable;
@@ -16,6 +15,7 @@ pub(crate) mod error;
 mod eyes;
 mod fields;
 pub(crate) mod info;
+mod mimo_mut;
 mod model_change;
 mod notices;
 pub(crate) mod observation;
@@ -52,6 +52,8 @@ pub use info::Info;
 #[cfg(feature = "eval")]
 pub(crate) use info::SCORED_PARTS;
 pub use info::{BehaviorInfo, Measures, TaskInfo};
+pub use mimo_mut::MimoMut;
+pub use model_change::ModelMut;
 pub use observation::{Observation, Step};
 #[cfg(feature = "eval")]
 pub(crate) use outcome::reports_outcome;
@@ -74,11 +76,7 @@ pub use viewer::{ViewFrom, Viewer};
 
 pub(crate) use env_state::ScratchUse;
 
-use std::sync::Arc;
-
-use crate::actuation::Actuation;
 use crate::config::Config;
-use crate::mimo::{LockReport, LockTarget};
 use crate::model::Model;
 use crate::spaces::NumpyRng;
 use action_delay::ActionDelay;
@@ -111,7 +109,6 @@ use task::{ActionTiming, Goals};
 pub struct Env {
     blueprint: Blueprint,
     physics: Physics,
-    actuation: Arc<dyn Actuation>,
     action_delay: ActionDelay,
     senses: Senses,
     task: Box<dyn Task>,
@@ -132,7 +129,6 @@ impl Clone for Env {
         Self {
             blueprint: self.blueprint.clone(),
             physics: self.physics.clone(),
-            actuation: self.actuation.clone(),
             action_delay: self.action_delay.clone(),
             senses: self.senses.clone(),
             task: self.task.clone(),
@@ -168,12 +164,12 @@ impl Env {
 
     fn from_blueprint(blueprint: &Blueprint) -> Result<Self, EnvError> {
         let config = blueprint.config();
-        let actuation = blueprint.tables().actuation.clone();
+        let actuation = blueprint.actuation();
         let task = blueprint.task().clone_task();
         let mut info = Info::default();
         clear(&*task, &mut info);
         Ok(Self {
-            physics: Physics::new(blueprint, &*actuation),
+            physics: Physics::new(blueprint),
             action_delay: ActionDelay::new(config, actuation.action_space(), blueprint.action_delay()),
             senses: Senses::new(blueprint, blueprint.task_sizes())?,
             goals: Goals::new(blueprint.task_sizes()),
@@ -183,41 +179,9 @@ impl Env {
             episode: Episode::default(),
             probe: None,
             blueprint: blueprint.clone(),
-            actuation,
             task,
             info,
         })
-    }
-
-    /// Locks a joint, or all joints of a part, at an angle in rad, from the next step on. Locks outlast resets. Locks of the
-    /// configuration can be moved and removed, too.
-    ///
-    /// ```
-    /// use babybench::config::Part;
-    /// use babybench::{Config, Env};
-    ///
-    /// let mut env = Env::new(Config { touch_active: false, vision_active: false, ..Config::default() })?;
-    /// env.reset(Some(0))?;
-    /// env.lock(Part::Head, 0.0)?;
-    /// let elbow = env.lock("robot:right_elbow", -1.2)?;
-    /// assert!(elbow.held.is_empty() && elbow.beyond_limits.is_empty());
-    /// env.unlock(Part::Head)?;
-    /// # Ok::<(), babybench::EnvError>(())
-    /// ```
-    ///
-    /// # Errors
-    /// A joint that does not exist or cannot be locked, or an angle that is not finite. Joints that the scene holds are listed in the
-    /// report and are not errors.
-    pub fn lock<'a>(&mut self, target: impl Into<LockTarget<'a>>, angle: f64) -> Result<LockReport, EnvError> {
-        self.physics.lock(self.blueprint.model(), target.into(), angle)
-    }
-
-    /// Unlocks a joint, or all joints of a part, from the next step on and for later episodes.
-    ///
-    /// # Errors
-    /// A joint that does not exist or cannot be locked.
-    pub fn unlock<'a>(&mut self, target: impl Into<LockTarget<'a>>) -> Result<LockReport, EnvError> {
-        self.physics.unlock(self.blueprint.model(), target.into())
     }
 
     /// Applies an action for `frame_skip` physics steps.
@@ -265,7 +229,8 @@ impl Env {
     pub(crate) fn check_action(&self, action: &[f32]) -> Result<(), EnvError> {
         let expected = self.action_space().len();
         check_numbers(self.model(), action, expected, |index| {
-            let (driven, extra) = (self.actuation.actuators(), self.actuation.extra_actuators());
+            let actuation = self.blueprint.actuation();
+            let (driven, extra) = (actuation.actuators(), actuation.extra_actuators());
             match index.checked_sub(expected - extra.len()) {
                 None => driven.get(index % driven.len().max(1)).copied(),
                 Some(index) => extra.get(index).copied(),
@@ -292,12 +257,12 @@ impl Env {
         let (state, task) = (self.physics.state(), &*self.task);
         let append = |out: &mut [f64]| task.observe(state, out);
         self.senses
-            .observe(model, state, &*self.actuation, append, &mut self.rng)
+            .observe(model, state, self.blueprint.actuation(), append, &mut self.rng)
     }
 
-    /// Returns the observation of the last reset, step or [`Env::refresh`], all of one moment. After [`Env::restore`] it lacks what a
-    /// snapshot does not hold (touch, pain, images). It does not include changes through [`Env::state_mut`], nor images that
-    /// [`Env::look`] has yet to draw.
+    /// Returns the observation of the last reset, step or [`ManualControl::refresh`], all of one moment. After [`Env::restore`] it lacks
+    /// what a snapshot does not hold (touch, pain, images). It does not include changes through [`Env::state_mut`], nor images that
+    /// [`SensesMut::look`] has yet to draw.
     pub fn observation(&self) -> Observation<'_> {
         self.with_goals(self.senses.observation())
     }
@@ -316,17 +281,12 @@ impl Env {
 
     /// Fills `action` with a random action, the same that Gymnasium's `action_space.sample()` draws from the same seed.
     pub fn sample_action(&mut self, action: &mut Vec<f32>) {
-        self.actuation.action_space().sample(&mut self.rng, action);
+        self.blueprint.actuation().action_space().sample(&mut self.rng, action);
     }
 
     /// Draws a seed from the generator of [`Env::sample_action`], so that whatever uses it follows from the environment's seed.
     pub(crate) fn draw_seed(&mut self) -> u64 {
         self.rng.word()
-    }
-
-    /// Seeds the generator of [`Env::sample_action`] and of start actions.
-    pub fn seed_action_space(&mut self, seed: u64) {
-        self.rng = NumpyRng::seed(seed);
     }
 }
 

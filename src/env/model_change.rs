@@ -107,41 +107,76 @@ fn shown(model: &Model, params: &Params) -> Arrays {
     arrays
 }
 
+/// The model of an environment, to change its numbers: [`Env::model_mut`].
+#[derive(Debug)]
+pub struct ModelMut<'a> {
+    env: &'a mut Env,
+}
+
 impl Env {
-    /// Returns the current arrays of the model, with the changes of [`Env::change_model`] and the actuation model's parameters after a
-    /// reset.
-    pub fn model_arrays(&self) -> Arrays {
-        shown(self.model(), &self.physics.base)
+    /// Returns the model, to change its numbers while the environment runs.
+    pub fn model_mut(&mut self) -> ModelMut<'_> {
+        ModelMut { env: self }
+    }
+}
+
+impl ModelMut<'_> {
+    /// Changes numbers of the model from the next step on, in this and in later episodes: gravity and timestep, mass, inertia, size,
+    /// friction, damping, stiffness, armature, gears, softness. It has the effect of writing into MuJoCo's `mjModel`: constants derived
+    /// from these numbers (`body_invweight0`, `dof_invweight0`, `geom_rbound`) keep their values unless the program writes them, too.
+    ///
+    /// A body whose mass or size a task has changed in an episode keeps the task's values until the episode ends. Snapshots of an
+    /// environment fit others with the same changes only. [`MimoMut::set_age`](crate::env::MimoMut::set_age) rebuilds the model without
+    /// them. Delays keep their number of steps, and so do the rates of senses.
+    ///
+    /// ```
+    /// use babybench::{Config, Env};
+    ///
+    /// let mut env = Env::new(Config { touch_active: false, vision_active: false, ..Config::default() })?;
+    /// env.model_mut().change(|model| {
+    ///     model.opt.gravity = [0.0, 0.0, -1.62]; // on the moon
+    ///     model.geom_friction.iter_mut().for_each(|friction| friction[0] *= 0.5);
+    /// })?;
+    /// env.reset(Some(0))?;
+    /// assert_eq!(env.state().params.gravity[2], -1.62);
+    /// assert!(env.model_mut().change(|model| model.nq += 1).is_err());
+    /// # Ok::<(), babybench::EnvError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`ModelChangeError`]: other changes, numbers that are not finite or too small, or an engine that cannot simulate the model. They
+    /// change nothing.
+    pub fn change(self, edit: impl FnOnce(&mut Arrays)) -> Result<(), EnvError> {
+        let env = self.env;
+        env.physics.check_shape()?;
+        let before = env.blueprint.model_arrays();
+        let mut after = before.clone();
+        edit(&mut after);
+        let change = ModelChange { before, after };
+        change.check()?;
+        if env.config().actuation_model == ActuationModel::Muscle && change.concerns("actuator_gear") {
+            return Err(ModelChangeError::Muscles.into());
+        }
+        let blueprint = env.blueprint.changed(&change)?;
+        // a picture still to be drawn shows the geoms as they are
+        env.senses_mut().look()?;
+        env.blueprint = blueprint;
+        let model = env.blueprint.model();
+        change.apply_to(&mut env.physics.base, model);
+        change.apply_to(&mut env.physics.state_mut().params, model);
+        env.physics.use_engines(env.blueprint.engines());
+        env.senses.use_tables(env.blueprint.tables());
+        Ok(())
     }
 
-    /// Returns the names of the arrays that differ from the model of the scene.
-    pub fn model_changes(&self) -> Vec<&'static str> {
-        let (model, params) = self.blueprint.origin();
-        let (first, now) = (shown(model, params), shown(self.model(), self.blueprint.params()));
-        let both = CHANGEABLE.iter().zip(rows(&first).into_iter().zip(rows(&now)));
-        both.filter(|(_, (first, now))| first != now)
-            .map(|(name, _)| *name)
-            .collect()
-    }
-
-    /// Returns the numbers that differ from the model of the scene: names as in [`CHANGEABLE`], and whole arrays, rows one after the other.
-    pub fn changed_numbers(&self) -> Vec<(&'static str, Vec<f64>)> {
-        let changed = self.model_changes();
-        let now = shown(self.model(), self.blueprint.params());
-        let both = CHANGEABLE.iter().zip(rows(&now));
-        both.filter(|(name, _)| changed.contains(name))
-            .map(|(name, numbers)| (*name, numbers.to_vec()))
-            .collect()
-    }
-
-    /// Gives the model the numbers of the scene, but for those of `changes`, as [`Env::changed_numbers`] returns them. Names that
+    /// Gives the model the numbers of the scene, but for those of `changes`, as [`Blueprint::changed_numbers`] returns them. Names that
     /// the model does not have, and arrays of another length, are refused.
     ///
     /// # Errors
-    /// As [`Env::change_model`]. Nothing is changed then.
-    pub fn set_changed_numbers(&mut self, changes: &[(String, Vec<f64>)]) -> Result<(), EnvError> {
-        let changed = self.model_changes();
-        let (model, params) = self.blueprint.origin();
+    /// As [`ModelMut::change`]. Nothing is changed then.
+    pub fn set_changed_numbers(self, changes: &[(String, Vec<f64>)]) -> Result<(), EnvError> {
+        let changed = self.env.blueprint.model_changes();
+        let (model, params) = self.env.blueprint.origin();
         let first = shown(model, params);
         let known = CHANGEABLE.iter().zip(rows(&first));
         let fits = |(name, numbers): &(String, Vec<f64>)| {
@@ -154,7 +189,7 @@ impl Env {
         if changes.is_empty() && changed.is_empty() {
             return Ok(());
         }
-        self.change_model(|arrays| {
+        self.change(|arrays| {
             let all = CHANGEABLE.iter().zip(rows_mut(arrays).into_iter().zip(rows(&first)));
             for (name, (to, first)) in all {
                 if let Some((_, numbers)) = changes.iter().find(|(changed, _)| changed == name) {
@@ -165,55 +200,30 @@ impl Env {
             }
         })
     }
-
-    /// Changes numbers of the model from the next step on, in this and in later episodes: gravity and timestep, mass, inertia, size,
-    /// friction, damping, stiffness, armature, gears, softness. It has the effect of writing into MuJoCo's `mjModel`: constants derived
-    /// from these numbers (`body_invweight0`, `dof_invweight0`, `geom_rbound`) keep their values unless the program writes them, too.
-    ///
-    /// A body whose mass or size a task has changed in an episode keeps the task's values until the episode ends. Snapshots of an
-    /// environment fit others with the same changes only. [`Env::set_age`] rebuilds the model without them. Delays keep their number of
-    /// steps, and so do the rates of senses.
-    ///
-    /// ```
-    /// use babybench::{Config, Env};
-    ///
-    /// let mut env = Env::new(Config { touch_active: false, vision_active: false, ..Config::default() })?;
-    /// env.change_model(|model| {
-    ///     model.opt.gravity = [0.0, 0.0, -1.62]; // on the moon
-    ///     model.geom_friction.iter_mut().for_each(|friction| friction[0] *= 0.5);
-    /// })?;
-    /// env.reset(Some(0))?;
-    /// assert_eq!(env.state().params.gravity[2], -1.62);
-    /// assert!(env.change_model(|model| model.nq += 1).is_err());
-    /// # Ok::<(), babybench::EnvError>(())
-    /// ```
-    ///
-    /// # Errors
-    /// [`ModelChangeError`]: other changes, numbers that are not finite or too small, or an engine that cannot simulate the model. They
-    /// change nothing.
-    pub fn change_model(&mut self, edit: impl FnOnce(&mut Arrays)) -> Result<(), EnvError> {
-        self.physics.check_shape()?;
-        let before = self.model_arrays();
-        let mut after = before.clone();
-        edit(&mut after);
-        let change = ModelChange { before, after };
-        change.check()?;
-        if self.config().actuation_model == ActuationModel::Muscle && change.concerns("actuator_gear") {
-            return Err(ModelChangeError::Muscles.into());
-        }
-        let blueprint = self.blueprint.changed(&change)?;
-        // a picture still to be drawn shows the geoms as they are
-        self.look()?;
-        self.blueprint = blueprint;
-        let model = self.blueprint.model();
-        change.apply_to(&mut self.physics.base, model);
-        change.apply_to(&mut self.physics.state_mut().params, model);
-        self.physics.use_engines(self.blueprint.engines());
-        Ok(())
-    }
 }
 
 impl Blueprint {
+    /// Returns the current arrays of the model, with the changes of [`ModelMut::change`] and the actuation model's parameters after a
+    /// reset.
+    pub fn model_arrays(&self) -> Arrays {
+        shown(self.model(), self.params())
+    }
+
+    /// Returns the names of the arrays that differ from the model of the scene.
+    pub fn model_changes(&self) -> Vec<&'static str> {
+        self.changed_numbers().into_iter().map(|(name, _)| name).collect()
+    }
+
+    /// Returns the numbers that differ from the model of the scene: names as in [`CHANGEABLE`], and whole arrays, rows one after the other.
+    pub fn changed_numbers(&self) -> Vec<(&'static str, Vec<f64>)> {
+        let (model, params) = self.origin();
+        let (first, now) = (shown(model, params), self.model_arrays());
+        let both = CHANGEABLE.iter().zip(rows(&first).into_iter().zip(rows(&now)));
+        both.filter(|(_, (first, now))| first != now)
+            .map(|(name, (_, now))| (*name, now.to_vec()))
+            .collect()
+    }
+
     /// Returns the blueprint of environments with the changed model.
     fn changed(&self, change: &ModelChange) -> Result<Self, EnvError> {
         let model = Arc::new(self.model().edited(|arrays| change.apply(rows_mut(arrays))));
@@ -227,5 +237,37 @@ impl Blueprint {
             }
         }
         self.with_model(model, params, &changes)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
+
+    use crate::{Config, Env};
+
+    #[test]
+    fn an_environment_works_with_the_tables_of_its_changed_model() {
+        let config = Config {
+            touch_active: false,
+            vision_active: false,
+            ..Config::default()
+        };
+        let mut env = Env::new(config).expect("embedded assets");
+        let before = env.blueprint.tables().clone();
+        env.model_mut()
+            .change(|model| model.opt.timestep *= 2.0)
+            .expect("it can be changed");
+        let now = env.blueprint.tables();
+        assert!(!Arc::ptr_eq(&before.proprioception, &now.proprioception));
+        assert!(Arc::ptr_eq(&env.senses.proprioception, &now.proprioception));
+        let vestibular = env.senses.vestibular.as_ref().zip(now.vestibular.as_ref());
+        assert!(vestibular.is_some_and(|(used, made)| Arc::ptr_eq(used, made)));
+        let mut anew = env.blueprint.env().expect("a blueprint carries the changes");
+        for env in [&mut env, &mut anew] {
+            env.reset(Some(3)).expect("no divergence");
+            env.step(&vec![0.4; env.action_space().len()]).expect("no divergence");
+        }
+        assert_eq!(env.observation(), anew.observation());
     }
 }

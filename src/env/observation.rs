@@ -85,6 +85,13 @@ pub struct Step<'a> {
     pub info: &'a Info,
 }
 
+impl Step<'_> {
+    /// Returns whether the episode is over: terminated or truncated.
+    pub fn over(&self) -> bool {
+        self.terminated || self.truncated
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

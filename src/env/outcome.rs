@@ -27,7 +27,7 @@ impl Env {
     }
 
     /// Returns whether the episode is over: terminated or truncated.
-    pub fn over(&self) -> bool {
+    pub(crate) fn over(&self) -> bool {
         self.episode.terminated || self.truncated()
     }
 
@@ -42,7 +42,7 @@ impl Env {
             model: self.blueprint.model(),
             state: self.physics.state(),
             touch: self.senses.touch.as_ref(),
-            actuation: &*self.actuation,
+            actuation: self.blueprint.actuation(),
         };
         let Goals {
             achieved,

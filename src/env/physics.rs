@@ -2,7 +2,6 @@
 
 use std::sync::Arc;
 
-use crate::actuation::Actuation;
 use crate::env::engines::{EngineSource, Engines};
 use crate::env::env_state::{EngineCall, EnvState, LastEngineCall, ScratchUse};
 use crate::env::{Blueprint, EnvError};
@@ -42,10 +41,10 @@ impl Clone for Physics {
 }
 
 impl Physics {
-    pub fn new(blueprint: &Blueprint, actuation: &dyn Actuation) -> Self {
+    pub fn new(blueprint: &Blueprint) -> Self {
         let engines = blueprint.engines().clone();
         let mut state = engines.reader().new_state();
-        actuation.prepare(blueprint.model(), &mut state);
+        blueprint.actuation().prepare(blueprint.model(), &mut state);
         // shared from the start, because copies into an own allocation would stay unshared
         state.params = blueprint.params().clone();
         Self {

@@ -1,24 +1,38 @@
 //! States set by a program.
 
-use crate::env::{Env, EnvError, Observation};
+use crate::env::{EnvError, ManualControl, Observation};
 use crate::physics::EngineError;
 
-impl Env {
+impl<'a> ManualControl<'a> {
+    /// Starts an episode from given positions (nq) and velocities (nv) instead of the settled state, without start actions. The task
+    /// chooses a goal.
+    ///
+    /// # Errors
+    /// Wrong lengths, numbers that are not finite, or a state from which the simulation diverges. The episode is then over.
+    pub fn reset_to(self, qpos: &[f64], qvel: &[f64]) -> Result<Observation<'a>, EnvError> {
+        let env = self.env;
+        env.end_episode();
+        env.play().scene.place(qpos, qvel)?;
+        env.begin_episode()?;
+        Ok(env.observation())
+    }
+
     /// Moves the scene to positions (nq) and velocities (nv) in the middle of an episode, and computes everything there. Time, counters,
     /// information, locks, muscle activations and the start of the solver remain.
     ///
     /// # Errors
-    /// As [`Env::reset_to`]. Vectors of wrong length or with numbers that are not finite change nothing.
-    pub fn set_state(&mut self, qpos: &[f64], qvel: &[f64]) -> Result<Observation<'_>, EnvError> {
+    /// As [`ManualControl::reset_to`]. Vectors of wrong length or with numbers that are not finite change nothing.
+    pub fn set_state(mut self, qpos: &[f64], qvel: &[f64]) -> Result<Observation<'a>, EnvError> {
         self.set_position(qpos, qvel)?;
-        self.senses.forget_picture();
-        if let Err(e) = self.physics.forward() {
-            self.episode.ready = false;
+        let env = self.env;
+        env.senses.forget_picture();
+        if let Err(e) = env.physics.forward() {
+            env.episode.ready = false;
             return Err(e.into());
         }
-        self.sense()?;
-        self.judge();
-        Ok(self.observation())
+        env.sense()?;
+        env.judge();
+        Ok(env.observation())
     }
 
     /// Recomputes poses, contacts, forces and senses from the current state, after [`Env::restore`] or changes through
@@ -38,44 +52,75 @@ impl Env {
     /// let mut other = env.blueprint().env()?;
     /// other.restore(&snapshot)?;
     /// assert!(other.observation().touch.is_none()); // a snapshot does not hold it
-    /// assert_eq!(other.refresh()?, env.refresh()?);
+    /// assert_eq!(other.by_hand().refresh()?, env.by_hand().refresh()?);
     /// # Ok::<(), babybench::EnvError>(())
     /// ```
     ///
     /// # Errors
     /// A state of wrong lengths, with numbers that are not finite, or from which the simulation diverges, after which [`Env::reset`] is
     /// needed; errors of the renderer.
-    pub fn refresh(&mut self) -> Result<Observation<'_>, EnvError> {
+    pub fn refresh(self) -> Result<Observation<'a>, EnvError> {
+        let env = self.env;
         // the solver leaves its solution in the state as the start of the next one, so the original start is restored
-        self.senses.forget_picture();
-        let before = self.physics.state().clone();
-        let posed = self.physics.forward();
-        self.physics.state_mut().copy_dynamic_from(&before);
+        env.senses.forget_picture();
+        let before = env.physics.state().clone();
+        let posed = env.physics.forward();
+        env.physics.state_mut().copy_dynamic_from(&before);
         if let Err(e) = posed {
-            self.episode.ready = false;
+            env.episode.ready = false;
             return Err(e.into());
         }
-        let (rng, mut memory) = (self.rng.clone(), Vec::new());
-        self.save_memory(&mut memory);
-        let sensed = self.sense();
-        self.load_memory(&memory)?;
-        self.rng = rng;
+        let (rng, mut memory) = (env.rng.clone(), Vec::new());
+        env.save_memory(&mut memory);
+        let sensed = env.sense();
+        env.load_memory(&memory)?;
+        env.rng = rng;
         sensed?;
-        let last = self.episode;
-        self.judge();
-        self.episode = last;
-        Ok(self.observation())
+        let last = env.episode;
+        env.judge();
+        env.episode = last;
+        Ok(env.observation())
     }
 
-    /// Sets positions (nq) and velocities (nv) without computing anything from them.
-    pub(super) fn set_position(&mut self, qpos: &[f64], qvel: &[f64]) -> Result<(), EnvError> {
-        let model = self.blueprint.model();
+    /// Computes everything at positions (nq) and velocities (nv), without sensing it. Time, controls, locks and the start of the solver
+    /// remain.
+    ///
+    /// # Errors
+    /// Wrong lengths or numbers that are not finite, which change nothing; a state from which the simulation diverges.
+    pub fn forward(&mut self, qpos: &[f64], qvel: &[f64]) -> Result<(), EnvError> {
+        self.set_position(qpos, qvel)?;
+        self.env.senses.forget_picture();
+        let forward = self.env.play().scene.forward();
+        self.env.episode.ready = forward.is_ok();
+        forward
+    }
+
+    /// Sets positions (nq) and velocities (nv) for the next physics step, without computing anything from them.
+    ///
+    /// # Errors
+    /// Wrong lengths or numbers that are not finite, which change nothing.
+    pub fn set_position(&mut self, qpos: &[f64], qvel: &[f64]) -> Result<(), EnvError> {
+        let model = self.env.blueprint.model();
         check_vector("qpos", qpos, model.nq)?;
         check_vector("qvel", qvel, model.nv)?;
-        self.physics.check_shape()?;
-        let state = self.physics.state_mut();
+        self.env.physics.check_shape()?;
+        let state = self.env.physics.state_mut();
         state.qpos.copy_from_slice(qpos);
         state.qvel.copy_from_slice(qvel);
+        Ok(())
+    }
+
+    /// Shows the scene at positions (nq) and velocities (nv) as a step: computes poses, contacts and forces there, senses, calls
+    /// [`ManualControl::track`], computes outcome and reward, and counts a step in the information. Nothing moves: neither action nor time
+    /// act on positions, and accelerations are those with which the scene would continue from there.
+    ///
+    /// # Errors
+    /// As [`ManualControl::forward`] and [`ManualControl::observe`].
+    pub fn show(&mut self, qpos: &[f64], qvel: &[f64]) -> Result<(), EnvError> {
+        self.env.senses.prepare();
+        self.forward(qpos, qvel)?;
+        self.observe()?;
+        self.env.finish_step();
         Ok(())
     }
 }

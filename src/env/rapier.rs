@@ -1,12 +1,13 @@
-//! The scene of an environment in Rapier, for queries.
+//! A scene in Rapier, for queries.
 
-use crate::env::{Env, EnvError};
+use crate::env::{Blueprint, EnvError};
+use crate::physics::State;
 use crate::physics::contact::Quirks;
 use crate::rapier::RapierScene;
 
-impl Env {
-    /// Creates a mirror of the scene in Rapier, at [`Env::state`], for ray casts and shape queries. After a step, [`RapierScene::sync`]
-    /// updates it for much less than its creation costs.
+impl Blueprint {
+    /// Creates a mirror of the scene in Rapier, at a state ([`Env::state`](crate::Env::state)), for ray casts and shape queries. After a
+    /// step, [`RapierScene::sync`] updates it for much less than its creation costs.
     ///
     /// ```
     /// use babybench::rapier::rapier3d_f64::prelude::{QueryFilter, Ray, Vector};
@@ -14,7 +15,7 @@ impl Env {
     ///
     /// let mut env = Env::new(Config { touch_active: false, vision_active: false, ..Config::default() })?;
     /// env.reset(Some(0))?;
-    /// let mut scene = env.rapier_scene()?;
+    /// let mut scene = env.blueprint().rapier_scene(env.state())?;
     ///
     /// let [x, y, z] = env.state().xpos[env.model().body("head").ok_or("MIMo has a head")?];
     /// let from_above = Ray::new(Vector::new(x, y, z + 1.0), -Vector::Z);
@@ -29,10 +30,10 @@ impl Env {
     ///
     /// # Errors
     /// As [`RapierScene::sync`].
-    pub fn rapier_scene(&self) -> Result<RapierScene, EnvError> {
+    pub fn rapier_scene(&self, state: &State) -> Result<RapierScene, EnvError> {
         // the peculiarities of contact geometry that both engines share
         let mut scene = RapierScene::new(self.model().clone(), Quirks::default());
-        scene.sync(self.state())?;
+        scene.sync(state)?;
         Ok(scene)
     }
 }

@@ -2,13 +2,13 @@
 
 use crate::actuation::set_controls;
 use crate::config::ActuationModel;
-use crate::env::{Env, EnvError, check_numbers};
+use crate::env::{Blueprint, Env, EnvError, check_numbers};
 use crate::mimo::{MimoBodies, MimoJoints};
 use crate::model::{Model, SensorType};
 use crate::physics::{EngineError, State};
 use crate::spaces::BoxSpace;
 
-/// The second infant in the scene of an environment, which a second policy moves and observes: [`Env::second_infant`].
+/// The second infant in the scene of an environment, which a second policy moves and observes: [`Blueprint::second_infant`].
 ///
 /// Its action has a number for each of its motors, in [-1, 1], or for each of its servos (`actuation_model: positional`), an angle in
 /// rad. Its observation has, in this order, the angles (rad) and velocities (rad/s) of its joints, the acceleration (m/s^2) and angular
@@ -72,8 +72,8 @@ impl SecondInfant {
         2 * self.joints.len() + 3 * self.sensor_adr.len()
     }
 
-    /// Sets its action, clipped to its space, in the environment that returned it from [`Env::second_infant`]. The action holds until the
-    /// next one, or a reset.
+    /// Sets its action, clipped to its space, in the environment that returned it from [`Blueprint::second_infant`]. The action holds until
+    /// the next one, or a reset.
     ///
     /// # Errors
     /// An action of wrong length or with numbers that are not finite, or an environment with another scene; nothing is changed.
@@ -129,7 +129,7 @@ fn sizes(model: &Model) -> [usize; 4] {
     [model.nu(), model.nq(), model.nv(), model.nsensordata()]
 }
 
-impl Env {
+impl Blueprint {
     /// Returns the second infant in the scene, if a custom document includes `other_mimo.xml`. With muscles there is none, because only
     /// the learner has muscles.
     ///

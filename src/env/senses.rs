@@ -134,6 +134,12 @@ impl Senses {
         Ok(senses)
     }
 
+    /// Switches to the tables of a changed model.
+    pub(super) fn use_tables(&mut self, tables: &SharedTables) {
+        self.proprioception.clone_from(&tables.proprioception);
+        self.vestibular.clone_from(&tables.vestibular);
+    }
+
     /// Returns whether a sense is observed.
     pub(super) fn is_on(&self, sense: Sense) -> bool {
         match sense {

@@ -2,8 +2,7 @@
 
 use std::ops::Deref;
 
-use crate::env::physics::Physics;
-use crate::env::{EnvError, Senses};
+use crate::env::{Env, EnvError, Senses};
 use crate::physics::State;
 use crate::render::ImageBuffers;
 use crate::sensors::transform::{Sense, Transform};
@@ -62,7 +61,7 @@ impl Senses {
         self.drawn
     }
 
-    /// Returns whether the eyes are drawn on request ([`Env::look`](crate::Env::look)): the configuration sets
+    /// Returns whether the eyes are drawn on request ([`SensesMut::look`]): the configuration sets
     /// [`vision_lazy`](crate::Config::vision_lazy), and no later picture depends on each, through noise, a delay, a rate or a transform
     /// that a program added.
     pub fn vision_is_lazy(&self) -> bool {
@@ -89,24 +88,23 @@ impl Senses {
 /// Mutable access to the senses of an environment and to their current view: [`Env::senses_mut`](crate::Env::senses_mut).
 #[derive(Debug)]
 pub struct SensesMut<'a> {
-    pub(super) senses: &'a mut Senses,
-    pub(super) physics: &'a Physics,
+    pub(super) env: &'a mut Env,
 }
 
 impl Deref for SensesMut<'_> {
     type Target = Senses;
 
     fn deref(&self) -> &Senses {
-        self.senses
+        &self.env.senses
     }
 }
 
 impl<'a> SensesMut<'a> {
     /// Returns the eyes and the state that they see.
     fn sight(&mut self) -> Result<(&mut Vision, &State), EnvError> {
-        let vision = self.senses.vision.as_mut().ok_or(EnvError::NoVision)?;
-        self.physics.check_shape()?;
-        Ok((vision, self.physics.state()))
+        let vision = self.env.senses.vision.as_mut().ok_or(EnvError::NoVision)?;
+        self.env.physics.check_shape()?;
+        Ok((vision, self.env.physics.state()))
     }
 
     /// Draws gray images of both eyes: left and right, (H, W) bytes from the top, by the weights 0.2989, 0.5870, 0.1140.
@@ -181,14 +179,14 @@ impl<'a> SensesMut<'a> {
     /// [`Config::vision_threads`](crate::Config::vision_threads); see [`Renderer::set_threads`](crate::render::Renderer::set_threads).
     /// Without eyes it has no effect.
     pub fn set_vision_threads(&mut self, threads: usize) {
-        if let Some(vision) = &mut self.senses.vision {
+        if let Some(vision) = &mut self.env.senses.vision {
             vision.set_threads(threads);
         }
     }
 
     /// Sets whether resets and steps leave the eyes' images to [`draw_eyes`](crate::env::draw_eyes), which draws them once for each.
     pub fn defer_vision(&mut self, deferred: bool) {
-        self.senses.vision_deferred = deferred;
+        self.env.senses.vision_deferred = deferred;
     }
 
     /// Adds a transform of a sense after the existing ones. Those of the configuration are, in this order: acuity and foveation of the
@@ -200,15 +198,15 @@ impl<'a> SensesMut<'a> {
     /// # Errors
     /// [`EnvError::SenseOff`].
     pub fn add_transform(&mut self, sense: Sense, transform: Box<dyn Transform>) -> Result<(), EnvError> {
-        if !self.senses.is_on(sense) {
+        if !self.env.senses.is_on(sense) {
             return Err(EnvError::SenseOff { sense });
         }
-        self.senses.add_transform(sense, transform);
+        self.env.senses.add_transform(sense, transform);
         Ok(())
     }
 
     /// Returns the sense of pain, if it is active, to change the softness and sensitivity of bodies.
     pub fn pain_mut(self) -> Option<&'a mut Pain> {
-        self.senses.pain.as_mut()
+        self.env.senses.pain.as_mut()
     }
 }

@@ -156,8 +156,8 @@ impl Env {
 
     /// Restores a snapshot of this environment, or of another with the same configuration and scene.
     ///
-    /// Touch, pain, images, poses and contacts are not in a snapshot. The next step or [`Env::refresh`] computes them. Until then
-    /// [`Env::observation`] has no touch, pain and images; its other parts are the original's.
+    /// Touch, pain, images, poses and contacts are not in a snapshot. The next step or [`refresh`](crate::env::ManualControl::refresh)
+    /// computes them. Until then [`Env::observation`] has no touch, pain and images; its other parts are the original's.
     ///
     /// # Errors
     /// A snapshot of another environment, or a damaged one, which change nothing.
@@ -198,7 +198,9 @@ impl Env {
             // a vector that a program has cleared cannot take its numbers
             let state = self.physics.reader().new_state();
             *self.physics.state_mut() = state;
-            self.actuation.prepare(self.blueprint.model(), self.physics.state_mut());
+            self.blueprint
+                .actuation()
+                .prepare(self.blueprint.model(), self.physics.state_mut());
         }
         let (behavior, memory) = self.parse(&r, counts)?;
         self.load_memory(memory)?;

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use crate::env::Env;
-use crate::physics::{Probe, Stage};
+use crate::physics::Stage;
 
 /// A part of the work of [`Env::step`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -40,17 +40,6 @@ impl EnvStage {
 pub type EnvProbe = Arc<dyn Fn(Option<EnvStage>) + Send + Sync>;
 
 impl Env {
-    /// Installs or removes a probe that is called when each stage of a step starts and when the step is done.
-    pub fn set_probe(&mut self, probe: Option<EnvProbe>) {
-        self.physics.own_engine().set_probe(probe.clone().map(|probe| -> Probe {
-            Box::new(move |stage| {
-                // between the physics steps the actuation works
-                probe(Some(stage.map_or(EnvStage::Actuation, EnvStage::Physics)));
-            })
-        }));
-        self.probe = probe;
-    }
-
     /// Calls the probe, if there is one, when a stage starts, or with `None` when the step is done.
     #[inline]
     pub(super) fn mark(&self, stage: Option<EnvStage>) {

@@ -24,12 +24,12 @@ const UNASKED: &str = "more lines came than observations went, so that its answe
 /// with a JSON list of numbers, the action, comes back from its standard output. Its standard error is passed through.
 ///
 /// The line is an object with the number of the `episode` in the evaluation and of the `step` in it (both from 0), and the keys of the
-/// observation ([`ObservationEntry`](crate::sensors::ObservationEntry)): `observation`, `touch` and all others but images are
-/// flat lists of numbers, `eye_left` and `eye_right` are objects `{"shape": [height, width, 3], "data": "..."}` with the bytes of the image in base64 (red, green, blue of each
-/// pixel, rows from the top), and what else `vision_outputs` asks for, such as `eye_left_depth`, are objects `{"shape":
-/// [height, width], "dtype": "float32", "data": "..."}`, the lowest byte of a number first. At step 0 of an episode there is also `action_space`, an object with the lists `low` and
-/// `high`. Numbers that are not finite, which JSON cannot say, are `null`. The input ends when there are no more
-/// episodes. In Python:
+/// observation ([`ObservationEntry`](crate::sensors::ObservationEntry)): `observation`, `touch` and all others but images are flat lists of
+/// numbers, `eye_left` and `eye_right` are objects `{"shape": [height, width, 3], "data": "..."}` with the bytes of the image in base64
+/// (red, green, blue of each pixel, rows from the top), and what else `vision_outputs` asks for, such as `eye_left_depth`, are objects
+/// `{"shape": [height, width], "dtype": "float32", "data": "..."}`, the lowest byte of a number first. At step 0 of an episode there is
+/// also `action_space`, an object with the lists `low` and `high`. Numbers that are not finite, which JSON cannot say, are `null`. The
+/// input ends when there are no more episodes. In Python:
 /// ```python
 /// import base64, json, sys
 /// import numpy as np
@@ -290,7 +290,7 @@ impl Policy for CommandPolicy {
     }
 
     fn act(&mut self, env: &mut Env, action: &mut Vec<f32>) -> Result<(), PolicyError> {
-        env.look().map_err(|e| PolicyError::Other(Box::new(e)))?;
+        env.senses_mut().look().map_err(|e| PolicyError::Other(Box::new(e)))?;
         let mut line = json::text(&ObservationMessage::new(env, self.now)).into_bytes();
         line.push(b'\n');
         let answer = self.ask(line)?;

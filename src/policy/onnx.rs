@@ -93,11 +93,11 @@ pub enum OnnxError {
 /// A policy that is an ONNX model, such as one exported from Stable-Baselines3 or PyTorch.
 ///
 /// Inputs: one for each entry of the observation that the model uses, named after its key
-/// ([`ObservationEntry`](crate::sensors::ObservationEntry): `observation`, `touch`, `eye_left`, ...), or a single one of any other name for all active senses, flattened and in the
-/// alphabetical order of their keys, as Gymnasium's `FlattenObservation` makes it. Vectors have shape `[n]` or `[1,
-/// n]`; images `[height, width, 3]` or `[3, height, width]`, with or without a 1 in front, and values of 0 to 255
-/// (Stable-Baselines3 scales them in the model). The size of the batch, or of anything else, may be left open. Numbers
-/// are `float32`; images may also be `uint8`.
+/// ([`ObservationEntry`](crate::sensors::ObservationEntry): `observation`, `touch`, `eye_left`, ...), or a single one of any other name for
+/// all active senses, flattened and in the alphabetical order of their keys, as Gymnasium's `FlattenObservation` makes it. Vectors have
+/// shape `[n]` or `[1, n]`; images `[height, width, 3]` or `[3, height, width]`, with or without a 1 in front, and values of 0 to 255
+/// (Stable-Baselines3 scales them in the model). The size of the batch, or of anything else, may be left open. Numbers are `float32`;
+/// images may also be `uint8`.
 ///
 /// Output: the action, `float32`, named `action` or `actions`, or the first output. It is clipped to the action space,
 /// as Stable-Baselines3 does. A policy with squashed outputs has to bring them to the range of the action space itself.
@@ -422,7 +422,7 @@ impl Policy for OnnxPolicy {
             self.connect(&env.observation_space())?;
         }
         if self.sees() {
-            env.look().map_err(|e| PolicyError::Other(Box::new(e)))?;
+            env.senses_mut().look().map_err(|e| PolicyError::Other(Box::new(e)))?;
         }
         self.decide(&env.observation(), env.action_space(), action)
     }

@@ -254,7 +254,7 @@ impl Recorder {
         let drawn = env.drawn();
         env.step(action)?;
         // checksums include images
-        env.look()?;
+        env.senses_mut().look()?;
         self.push(env, action, drawn)
     }
 
@@ -266,8 +266,8 @@ impl Recorder {
     }
 
     /// Records the current moment of an environment as a step, with the action that is said to have led to it, for steps that a program
-    /// composes itself ([`Env::by_hand`]). A replay, which knows only actions, finds other bits there. Images that [`Env::look`] has yet
-    /// to draw are not recorded.
+    /// composes itself ([`Env::by_hand`]). A replay, which knows only actions, finds other bits there. Images that
+    /// [`SensesMut::look`](crate::env::SensesMut::look) has yet to draw are not recorded.
     ///
     /// # Errors
     /// No episode has begun; an action of wrong length or with numbers that are not finite.

@@ -80,7 +80,9 @@ pub fn replay_with_images(
             source: Box::new(e),
         }
     };
-    env.reset_to(&recording.qpos0, &recording.qvel0).map_err(at(0))?;
+    env.by_hand()
+        .reset_to(&recording.qpos0, &recording.qvel0)
+        .map_err(at(0))?;
     env.by_hand().set_activity(&recording.activity0).map_err(at(0))?;
     let muscles = recording.activity0.len();
     let mut out = Replay::begin(env, recording.len);
@@ -111,7 +113,7 @@ pub fn replay_with_images(
         {
             out.eye_sizes = env.config().eye_sizes();
             out.eye_steps.push(t as i64);
-            env.look().map_err(at(t))?;
+            env.senses_mut().look().map_err(at(t))?;
             out.push_eyes(env, viewer).map_err(at(t))?;
         }
     }
@@ -120,7 +122,7 @@ pub fn replay_with_images(
 
 /// Starts an episode of a recording of a task.
 fn begin_episode(env: &mut Env, start: &EpisodeStart) -> Result<(), EnvError> {
-    env.reset_to(&start.qpos, &start.qvel)?;
+    env.by_hand().reset_to(&start.qpos, &start.qvel)?;
     if let (Some([radius, mass, inertia @ ..]), Some(body)) = (start.ball, env.model().body("target")) {
         let change = FreeBody {
             mass: Some(mass),
@@ -132,7 +134,7 @@ fn begin_episode(env: &mut Env, start: &EpisodeStart) -> Result<(), EnvError> {
     }
     env.by_hand().set_activity(&start.activity)?;
     if !start.desired_goal.is_empty() {
-        env.set_goal(&start.desired_goal)?;
+        env.by_hand().set_goal(&start.desired_goal)?;
     }
     if !start.warm.is_empty() {
         env.state_mut().qacc_warmstart.copy_from_slice(&start.warm);

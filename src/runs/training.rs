@@ -75,9 +75,9 @@ impl RunEnv {
         self.env.sample_action(action);
     }
 
-    /// Seeds the random actions: see [`Env::seed_action_space`].
+    /// Seeds the random actions: see [`ManualControl::seed_action_space`](crate::env::ManualControl::seed_action_space).
     pub fn seed_action_space(&mut self, seed: u64) {
-        self.env.seed_action_space(seed);
+        self.env.by_hand().seed_action_space(seed);
     }
 
     /// Returns the inner environment mutably; episodes reset through it are not logged.

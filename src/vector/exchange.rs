@@ -213,7 +213,7 @@ impl VectorEnv {
     pub fn seed_action_spaces(&mut self, seed: u64) -> Result<(), VectorError> {
         self.check_home()?;
         for (env, slot) in (0..).zip(self.slots.iter_mut().flatten()) {
-            slot.env.seed_action_space(seed.wrapping_add(env));
+            slot.env.by_hand().seed_action_space(seed.wrapping_add(env));
         }
         Ok(())
     }

@@ -65,7 +65,7 @@ impl VectorEnv {
             // environments in flight return through the same queue, so no others may use it now
             for &env in &self.ids {
                 let Some(slot) = &mut self.slots[env] else { continue };
-                slot.env.look().map_err(of(env))?;
+                slot.env.senses_mut().look().map_err(of(env))?;
             }
         }
         for (row, &env) in self.ids.iter().enumerate() {

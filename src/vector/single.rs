@@ -35,25 +35,25 @@ impl VectorEnv {
         Ok(last.map(|last| &last.info))
     }
 
-    /// Locks a joint, or all joints of a part, of one environment: see [`Env::lock`].
+    /// Locks a joint, or all joints of a part, of one environment: see [`MimoMut::lock`](crate::env::MimoMut::lock).
     ///
     /// # Errors
-    /// As [`Env::lock`]; [`VectorError::Unknown`], [`VectorError::InFlight`].
+    /// As [`MimoMut::lock`](crate::env::MimoMut::lock); [`VectorError::Unknown`], [`VectorError::InFlight`].
     pub fn lock<'a>(
         &mut self,
         env: usize,
         target: impl Into<LockTarget<'a>>,
         angle: f64,
     ) -> Result<LockReport, VectorError> {
-        self.env_mut(env)?.lock(target, angle).map_err(of(env))
+        self.env_mut(env)?.mimo_mut().lock(target, angle).map_err(of(env))
     }
 
-    /// Unlocks a joint, or all joints of a part, of one environment: see [`Env::unlock`].
+    /// Unlocks a joint, or all joints of a part, of one environment: see [`MimoMut::unlock`](crate::env::MimoMut::unlock).
     ///
     /// # Errors
-    /// As [`Env::unlock`]; [`VectorError::Unknown`], [`VectorError::InFlight`].
+    /// As [`MimoMut::unlock`](crate::env::MimoMut::unlock); [`VectorError::Unknown`], [`VectorError::InFlight`].
     pub fn unlock<'a>(&mut self, env: usize, target: impl Into<LockTarget<'a>>) -> Result<LockReport, VectorError> {
-        self.env_mut(env)?.unlock(target).map_err(of(env))
+        self.env_mut(env)?.mimo_mut().unlock(target).map_err(of(env))
     }
 
     /// Takes a snapshot of one environment: see [`Env::snapshot`].
@@ -73,12 +73,12 @@ impl VectorEnv {
         restored.map_err(|e| of(env)(e.into()))
     }
 
-    /// Changes the age of one environment's MIMo between two episodes: see [`Env::set_age`]. With
+    /// Changes the age of one environment's MIMo between two episodes: see [`MimoMut::set_age`](crate::env::MimoMut::set_age). With
     /// [`Config::touch_grows`](crate::Config::touch_grows) the spaces are the same at every age.
     ///
     /// # Errors
-    /// As [`Env::set_age`]; [`VectorError::Grown`] if the spaces would differ; [`VectorError::Unknown`], [`VectorError::InFlight`]. They
-    /// change nothing.
+    /// As [`MimoMut::set_age`](crate::env::MimoMut::set_age); [`VectorError::Grown`] if the spaces would differ; [`VectorError::Unknown`],
+    /// [`VectorError::InFlight`]. They change nothing.
     pub fn set_age(&mut self, env: usize, age: Option<f64>) -> Result<(), VectorError> {
         let grown = self.env(env)?.grown(age).map_err(of(env))?;
         match difference(&self.action_space, &self.observation_space, &grown) {
@@ -95,21 +95,23 @@ impl VectorEnv {
         }
     }
 
-    /// Changes the face of one environment's MIMo: see [`Env::swap_facial_expression`].
+    /// Changes the face of one environment's MIMo: see [`MimoMut::swap_facial_expression`](crate::env::MimoMut::swap_facial_expression).
     ///
     /// # Errors
-    /// As [`Env::swap_facial_expression`]; [`VectorError::Unknown`], [`VectorError::InFlight`].
+    /// As [`MimoMut::swap_facial_expression`](crate::env::MimoMut::swap_facial_expression); [`VectorError::Unknown`],
+    /// [`VectorError::InFlight`].
     pub fn swap_facial_expression(&mut self, env: usize, face: FacialExpression) -> Result<(), VectorError> {
-        let swapped = self.env_mut(env)?.swap_facial_expression(face);
+        let swapped = self.env_mut(env)?.mimo_mut().swap_facial_expression(face);
         swapped.map_err(of(env))
     }
 
-    /// Moves the scene of one environment to positions and velocities in the middle of an episode: see [`Env::set_state`].
+    /// Moves the scene of one environment to positions and velocities in the middle of an episode: see
+    /// [`ManualControl::set_state`](crate::env::ManualControl::set_state).
     ///
     /// # Errors
-    /// As [`Env::set_state`]; [`VectorError::Unknown`], [`VectorError::InFlight`].
+    /// As [`ManualControl::set_state`](crate::env::ManualControl::set_state); [`VectorError::Unknown`], [`VectorError::InFlight`].
     pub fn set_state(&mut self, env: usize, qpos: &[f64], qvel: &[f64]) -> Result<Observation<'_>, VectorError> {
-        self.env_mut(env)?.set_state(qpos, qvel).map_err(of(env))
+        self.env_mut(env)?.by_hand().set_state(qpos, qvel).map_err(of(env))
     }
 
     /// Returns the bounds of the actions of one environment.

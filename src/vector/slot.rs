@@ -100,7 +100,7 @@ impl Slot {
             }
             Command::Step if self.mode != AutoresetMode::Disabled && self.over() => self.reset(None),
             Command::Step => self.step(),
-            Command::Look => self.failure = self.env.look().err(),
+            Command::Look => self.failure = self.env.senses_mut().look().err(),
         }
     }
 

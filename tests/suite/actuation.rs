@@ -118,7 +118,7 @@ fn muscles_are_activated_in_every_physics_step() {
         assert_eq!((seen.len(), seen[0], seen[87]), (176, expect, expect));
         // sum |a^2 F| / (2n sum F)
         close(
-            env.actuation().cost(env.model(), env.state()),
+            env.blueprint().actuation().cost(env.model(), env.state()),
             expect * expect / 88.0,
             "cost",
         );
@@ -210,7 +210,7 @@ fn servos_hold_their_target_for_all_substeps_except_in_the_reference() {
             .range(ProprioceptionComponent::Actuation)
             .expect("on");
         assert_eq!(env.observation().proprioception[range][elbow], expect);
-        assert_eq!(env.actuation().cost(env.model(), env.state()), 0.0);
+        assert_eq!(env.blueprint().actuation().cost(env.model(), env.state()), 0.0);
     }
 }
 
@@ -249,7 +249,7 @@ fn servos_of_held_joints_stay_at_0() {
         let Some(i) = env.model().actuator(name) else { continue };
         assert_eq!(env.state().ctrl[i] == 0.0, held, "{name}");
     }
-    env.unlock("robot:right_elbow").expect("a lock");
+    env.mimo_mut().unlock("robot:right_elbow").expect("a lock");
     env.step(&action).expect("no divergence");
     let elbow = actuator(env.model(), "act:right_elbow");
     assert_eq!(env.state().ctrl[elbow], f64::from(action[elbow]));
@@ -361,7 +361,7 @@ fn every_number_of_proprioception_has_a_name() {
             let mut env = env(config(kind, Behavior::HandRegard, Scene::Base, compat));
             env.reset(Some(0)).expect("no divergence");
             let (p, model) = (env.senses().proprioception(), env.model());
-            let entries = p.entries(model, env.actuation());
+            let entries = p.entries(model, env.blueprint().actuation());
             let mut end = 0;
             let mut names = std::collections::BTreeSet::new();
             for e in &entries {
@@ -381,7 +381,10 @@ fn every_number_of_proprioception_has_a_name() {
             }
             assert_eq!(end, p.len());
             assert_eq!(p.find(model, ProprioceptionComponent::Angles, "robot:tail"), None);
-            assert_eq!(env.actuation().action_names(model).len(), env.action_space().len());
+            assert_eq!(
+                env.blueprint().actuation().action_names(model).len(),
+                env.action_space().len()
+            );
         }
     }
 }
@@ -423,14 +426,14 @@ fn states_and_activities_are_set_and_checked() {
     let (mut qpos, qvel) = (env.state().qpos.clone(), env.state().qvel.clone());
     let before = env.snapshot();
     assert!(matches!(
-        env.set_state(&qpos[1..], &qvel),
+        env.by_hand().set_state(&qpos[1..], &qvel),
         Err(EnvError::StateLength { what: "qpos", .. })
     ));
     assert!(matches!(
-        env.set_state(&qpos, &[]),
+        env.by_hand().set_state(&qpos, &[]),
         Err(EnvError::StateLength { what: "qvel", .. })
     ));
-    assert!(env.set_state(&vec![f64::NAN; qpos.len()], &qvel).is_err());
+    assert!(env.by_hand().set_state(&vec![f64::NAN; qpos.len()], &qvel).is_err());
     assert!(matches!(
         env.by_hand().set_activity(&[0.0; 3]),
         Err(EnvError::StateLength { .. })
@@ -438,7 +441,7 @@ fn states_and_activities_are_set_and_checked() {
     assert!(env.by_hand().set_activity(&[f64::NAN; 88]).is_err());
     assert_eq!(env.snapshot(), before);
     qpos[2] += 1.0;
-    env.set_state(&qpos, &qvel).expect("a state");
+    env.by_hand().set_state(&qpos, &qvel).expect("a state");
     assert_eq!(env.state().qpos, qpos);
     assert_eq!(env.state().xpos[1][2], qpos[2], "poses are brought up to date");
     env.by_hand().set_activity(&[2.0; 88]).expect("clipped");

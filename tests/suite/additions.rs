@@ -143,7 +143,7 @@ fn other_actuators_rest_unless_they_are_asked_for() {
             (asked.action_space().low()[n], asked.action_space().high()[n + 1]),
             (-2.0, 1.0)
         );
-        let (model, actuation) = (asked.model().clone(), asked.actuation());
+        let (model, actuation) = (asked.model().clone(), asked.blueprint().actuation());
         assert_eq!(actuation.action_names(&model)[n..], ["arm control", "wrist control"]);
         let names = actuation.observation_names(&model);
         assert_eq!(

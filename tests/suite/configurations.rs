@@ -78,7 +78,7 @@ fn spaces(env: &Env, config: &Config, length: usize) -> Result<(), String> {
         "entries",
         env.senses()
             .proprioception()
-            .entries(env.model(), env.actuation())
+            .entries(env.model(), env.blueprint().actuation())
             .iter()
             .map(|e| e.range.len())
             .sum(),

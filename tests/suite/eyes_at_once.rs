@@ -129,10 +129,10 @@ fn growing_keeps_the_thread_and_a_vector_has_its_own() {
     let blueprint = Blueprint::new(config).expect("embedded assets");
     let mut env = blueprint.env().expect("embedded assets");
     env.senses_mut().set_vision_threads(1);
-    env.set_age(Some(3.0)).expect("any age");
+    env.mimo_mut().set_age(Some(3.0)).expect("any age");
     assert_eq!(env.senses().vision_threads(), 1);
     env.senses_mut().set_vision_threads(2);
-    env.set_age(Some(5.0)).expect("any age");
+    env.mimo_mut().set_age(Some(5.0)).expect("any age");
     assert_eq!(env.senses().vision_threads(), two());
     let mut envs = VectorEnv::new(&blueprint, 2, VectorOptions::default()).expect("memory and threads");
     assert_eq!(envs.env(0).expect("it is here").senses().vision_threads(), 1);

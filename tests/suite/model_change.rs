@@ -61,29 +61,30 @@ fn what_is_changed_acts_in_the_next_steps_and_in_later_episodes_until_it_is_chan
     let then = course(&mut plain, 5);
     for (name, edit) in EDITS {
         let mut changed = started(&config);
-        changed.change_model(edit).expect(name);
+        changed.model_mut().change(edit).expect(name);
         assert_ne!(course(&mut changed, 10), before, "{name} does not act");
         changed.reset(Some(6)).expect("no divergence");
         assert_ne!(course(&mut changed, 5), then, "{name} is forgotten by a reset");
-        let original = later.model_arrays();
-        changed.change_model(|model| *model = original).expect(name);
+        let original = later.blueprint().model_arrays();
+        changed.model_mut().change(|model| *model = original).expect(name);
         assert!(
-            changed.model_changes().is_empty(),
+            changed.blueprint().model_changes().is_empty(),
             "{name}: {:?}",
-            changed.model_changes()
+            changed.blueprint().model_changes()
         );
         changed.reset(Some(6)).expect("no divergence");
         assert_eq!(course(&mut changed, 5), then, "{name} does not come back");
     }
     // one after the other, as at once
     for (_, edit) in EDITS {
-        later.change_model(edit).expect("it can be changed");
+        later.model_mut().change(edit).expect("it can be changed");
     }
     let mut at_once = started(&config);
     at_once
-        .change_model(|m| EDITS.iter().for_each(|(_, edit)| edit(m)))
+        .model_mut()
+        .change(|m| EDITS.iter().for_each(|(_, edit)| edit(m)))
         .expect("it can be changed");
-    assert_eq!(later.model_arrays(), at_once.model_arrays());
+    assert_eq!(later.blueprint().model_arrays(), at_once.blueprint().model_arrays());
     assert_eq!(course(&mut later, 10), course(&mut at_once, 10));
 }
 
@@ -96,9 +97,10 @@ fn a_changed_model_steps_as_one_that_a_document_has() {
     });
     let mut changed = env(config);
     changed
-        .change_model(|model| (model.opt.gravity, model.opt.density) = ([0.5, 0.0, -3.0], 2.0))
+        .model_mut()
+        .change(|model| (model.opt.gravity, model.opt.density) = ([0.5, 0.0, -3.0], 2.0))
         .expect("it can be changed");
-    assert_eq!(changed.model_arrays().opt, document.opt);
+    assert_eq!(changed.blueprint().model_arrays().opt, document.opt);
     let mut engine = changed.blueprint().engine();
     let mut other = babybench::physics::SoftEngine::new(
         std::sync::Arc::new(document),
@@ -123,7 +125,8 @@ fn gravity_changes_with_both_engines() {
             ..free(Behavior::None, Scene::Base)
         };
         let mut env = env(config);
-        env.change_model(|model| model.opt.gravity = [0.0, 0.0, 9.81])
+        env.model_mut()
+            .change(|model| model.opt.gravity = [0.0, 0.0, 9.81])
             .expect("it can be changed");
         env.reset(Some(0)).expect("no divergence");
         let before = env.state().qpos[2];
@@ -140,7 +143,7 @@ fn what_cannot_be_changed_is_refused_and_changes_nothing() {
     let config = free(Behavior::SelfTouch, Scene::Base);
     let mut env = started(&config);
     let before = env.snapshot();
-    let refused = |env: &mut Env, edit: Edit| match env.change_model(edit) {
+    let refused = |env: &mut Env, edit: Edit| match env.model_mut().change(edit) {
         Err(EnvError::ModelChange(e)) => e,
         other => panic!("{other:?}"),
     };
@@ -175,11 +178,19 @@ fn what_cannot_be_changed_is_refused_and_changes_nothing() {
         ModelChangeError::Muscles
     );
     // the muscles' own stiffness and damping are what is seen
-    assert!(muscles.model_arrays().jnt_stiffness.iter().all(|s| *s == 0.0));
+    assert!(
+        muscles
+            .blueprint()
+            .model_arrays()
+            .jnt_stiffness
+            .iter()
+            .all(|s| *s == 0.0)
+    );
     muscles
-        .change_model(|m| m.opt.gravity[2] = -5.0)
+        .model_mut()
+        .change(|m| m.opt.gravity[2] = -5.0)
         .expect("it can be changed");
-    assert_eq!(muscles.model_changes(), ["opt.gravity"]);
+    assert_eq!(muscles.blueprint().model_changes(), ["opt.gravity"]);
 }
 
 #[test]
@@ -187,7 +198,7 @@ fn snapshots_fit_environments_with_the_same_changes() {
     let config = free(Behavior::SelfTouch, Scene::Crib);
     let edit: Edit = |model| (model.opt.gravity[2], model.dof_armature[7]) = (-5.0, 0.5);
     let mut env = started(&config);
-    env.change_model(edit).expect("it can be changed");
+    env.model_mut().change(edit).expect("it can be changed");
     random_steps(&mut env, 3);
     let snapshot = env.snapshot();
     let go_on = |env: &mut Env| {
@@ -200,7 +211,7 @@ fn snapshots_fit_environments_with_the_same_changes() {
     let refused = other.restore(&snapshot).expect_err("another model");
     let differences = "model.dof_armature was another one; model.opt.gravity was another one".to_string();
     assert_eq!(refused, SnapshotError::OtherConfiguration { differences });
-    other.change_model(edit).expect("it can be changed");
+    other.model_mut().change(edit).expect("it can be changed");
     other.restore(&snapshot).expect("the same model");
     assert_eq!(go_on(&mut other), expected);
     let mut copy = env.blueprint().env().expect("an environment");

@@ -24,7 +24,7 @@ fn measure(info: &Info, name: &str) -> f64 {
 
 /// Kicks with the right leg, the slower the later in an episode: all its joints, to and fro, 1.25 times a second.
 fn kick(env: &Env, step: usize, action: &mut [f32]) {
-    let driven = env.actuation().actuators();
+    let driven = env.blueprint().actuation().actuators();
     for (value, &id) in action.iter_mut().zip(driven) {
         let leg =
             env.model().actuator_name[id].contains("right_hip") || env.model().actuator_name[id].contains("right_knee");
@@ -135,7 +135,7 @@ fn put(env: &mut Env, toy: &str, place: [f64; 3]) {
     let joint = env.model().joint(toy).expect("a toy");
     let at = env.model().jnt_qposadr[joint];
     qpos[at..at + 3].copy_from_slice(&place);
-    env.set_state(&qpos, &qvel).expect("no divergence");
+    env.by_hand().set_state(&qpos, &qvel).expect("no divergence");
 }
 
 #[test]

@@ -42,7 +42,12 @@ fn every_scene_resets_steps_and_truncates() {
             assert!(step.observation.proprioception.iter().all(|v| v.is_finite()));
             assert_eq!(step.truncated, k == 5);
         }
-        let found = env.rapier_scene().expect("its own state").contacts().len();
+        let found = env
+            .blueprint()
+            .rapier_scene(env.state())
+            .expect("its own state")
+            .contacts()
+            .len();
         let felt = env.state().contact.iter().filter(|c| c.force[0] > 0.0).count();
         println!("{behavior}/{scene}: {found} contacts in the scene, {felt} with a force");
         assert!(found > 0 && felt > 0, "{behavior}/{scene}");
@@ -185,8 +190,8 @@ fn rapier_touch() -> Env {
 fn locks_hold() {
     let mut env = rapier_env(Behavior::None, Scene::Base);
     env.reset(Some(0)).expect("no divergence");
-    let report = env.lock(Part::Head, 0.0).expect("can be locked");
-    let elbow = env.lock("robot:right_elbow", -1.2).expect("can be locked");
+    let report = env.mimo_mut().lock(Part::Head, 0.0).expect("can be locked");
+    let elbow = env.mimo_mut().lock("robot:right_elbow", -1.2).expect("can be locked");
     assert!(elbow.held.is_empty() && !report.changed.is_empty());
     let zero = vec![0.0; env.action_space().len()];
     repeat(&mut env, &zero, 200);
@@ -212,7 +217,7 @@ fn locks_hold() {
         worst[0], worst[1]
     );
     assert!(worst[0] < 0.01 && worst[1] < 0.04);
-    env.unlock("robot:right_elbow").expect("can be unlocked");
+    env.mimo_mut().unlock("robot:right_elbow").expect("can be unlocked");
     let push = vec![0.5; env.action_space().len()];
     repeat(&mut env, &push, 50);
     assert!((at(&env, elbow.changed[0]) + 1.2).abs() > 0.05);

@@ -286,9 +286,9 @@ fn a_record_of_changed_models_and_ages_is_repeated() {
     let still = vec![0.0; env.action_space().len()];
     for episode in 0..4 {
         match episode {
-            1 => env.change_model(|model| model.opt.gravity = [0.0, 0.0, -1.62]),
-            2 => env.set_age(Some(3.0)),
-            3 => env.set_age(None),
+            1 => env.model_mut().change(|model| model.opt.gravity = [0.0, 0.0, -1.62]),
+            2 => env.mimo_mut().set_age(Some(3.0)),
+            3 => env.mimo_mut().set_age(None),
             _ => Ok(()),
         }
         .expect("it can be changed");
@@ -317,9 +317,14 @@ fn a_record_of_changed_models_and_ages_is_repeated() {
         let replayed = record.replay(episode, &mut env).expect("a replay");
         assert_eq!((replayed.steps, replayed.first_difference), (5, None), "{episode}");
     }
-    assert!(env.set_changed_numbers(&[("nothing".to_string(), vec![1.0])]).is_err());
     assert!(
-        env.set_changed_numbers(&[("opt.gravity".to_string(), vec![1.0])])
+        env.model_mut()
+            .set_changed_numbers(&[("nothing".to_string(), vec![1.0])])
+            .is_err()
+    );
+    assert!(
+        env.model_mut()
+            .set_changed_numbers(&[("opt.gravity".to_string(), vec![1.0])])
             .is_err()
     );
 }

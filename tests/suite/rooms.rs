@@ -185,7 +185,7 @@ fn toys_with_the_names_of_parts_are_toys() {
                 format!("{:?}", other.observation_space())
             );
             assert_eq!(
-                env.actuation().action_names(model),
+                env.blueprint().actuation().action_names(model),
                 build(plain, &config).expect("it fits").action_names(plain)
             );
             let toys = ["act:head_tilt2", "spring"].map(|name| model.actuator(name).expect("the toy's"));
@@ -222,7 +222,7 @@ fn a_servo_of_a_toy_holds_whatever_moves_mimo() {
         let mut start = env.state().qpos.clone();
         start[at] = 0.5;
         let still = vec![0.0; env.model().nv];
-        env.reset_to(&start, &still).expect("a state");
+        env.by_hand().reset_to(&start, &still).expect("a state");
         let rest = vec![0.0; env.action_space().len()];
         repeat(&mut env, &rest, 5);
         env.state().qpos[at]
@@ -278,7 +278,7 @@ fn mimo_grows_where_he_lies_and_his_toys_do_not_hold_him_up() {
         let hip = |config: &Config| {
             let mut env = in_room(config, &shelf).expect("a room").env().expect("one");
             let (start, still) = (env.model().qpos0.clone(), vec![0.0; env.model().nv]);
-            env.reset_to(&start, &still).expect("a state");
+            env.by_hand().reset_to(&start, &still).expect("a state");
             env.state().xpos[env.model().body("hip").expect("MIMo")]
         };
         let original = Config {

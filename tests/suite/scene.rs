@@ -32,7 +32,7 @@ fn visit(steps: usize, mut look: impl FnMut(&str, usize, &mut Env, &RapierScene)
 }
 
 fn mirror(env: &Env) -> RapierScene {
-    env.rapier_scene().expect("its own state")
+    env.blueprint().rapier_scene(env.state()).expect("its own state")
 }
 
 #[test]

@@ -42,7 +42,7 @@ fn a_second_policy_moves_the_second_infant() {
         let mut env = two(&plain(behavior));
         let alone = env_alone(behavior);
         assert_eq!(env.action_space(), alone.action_space());
-        let other = env.second_infant().expect("another one");
+        let other = env.blueprint().second_infant().expect("another one");
         assert_eq!(other.action_space().len(), alone.action_space().len());
         assert_eq!(other.joints().len(), alone.senses().proprioception().joints().len());
         env.reset(Some(0)).expect("no divergence");
@@ -75,7 +75,13 @@ fn a_second_policy_moves_the_second_infant() {
             .filter(|&&i| env.state().ctrl[i] != 0.0)
             .count();
         assert_eq!(touched, other.actuators().len());
-        assert!(env.actuation().actuators().iter().all(|&i| env.state().ctrl[i] == 0.0));
+        assert!(
+            env.blueprint()
+                .actuation()
+                .actuators()
+                .iter()
+                .all(|&i| env.state().ctrl[i] == 0.0)
+        );
         env.reset(None).expect("no divergence");
         assert!(
             other.actuators().iter().all(|&i| env.state().ctrl[i] == 0.0),
@@ -151,7 +157,7 @@ fn either_of_them_learns_at_an_age_of_his_own() {
 #[test]
 fn what_cannot_be_is_said() {
     let original = two(&plain(Behavior::SelfTouch));
-    assert!(original.second_infant().is_some());
+    assert!(original.blueprint().second_infant().is_some());
     assert!(env_alone(Behavior::SelfTouch).second_infant().is_none());
     let muscles = Config {
         actuation_model: ActuationModel::Muscle,
@@ -163,7 +169,7 @@ fn what_cannot_be_is_said() {
         ..plain(Behavior::SelfTouch)
     };
     let env = two(&servos);
-    let second = env.second_infant().expect("another one");
+    let second = env.blueprint().second_infant().expect("another one");
     assert_eq!(second.action_space().low(), env.action_space().low());
     // an environment with another scene is refused, and stays as it is
     let mut alone = env_alone(Behavior::SelfTouch);

@@ -82,12 +82,12 @@ fn a_continuation_has_the_same_bits() {
             (Behavior::None, Scene::Cubes, Compat::Reference),
         ] {
             let mut env = started(of(kind, behavior, scene.clone(), compat));
-            env.lock(Part::Arms, 0.02).expect("locks");
+            env.mimo_mut().lock(Part::Arms, 0.02).expect("locks");
             random_steps(&mut env, 1);
             let snapshot = env.snapshot();
             let expect = course(&mut env, 10);
 
-            env.unlock(Part::Arms).expect("locks");
+            env.mimo_mut().unlock(Part::Arms).expect("locks");
             env.reset(Some(8)).expect("no divergence");
             env.restore(&snapshot).expect("its own snapshot");
             assert_eq!(
@@ -110,7 +110,7 @@ fn a_continuation_has_the_same_bits() {
             other.reset(Some(1)).expect("no divergence");
             let on = |env: &Env| env.state().params.eq_active.iter().filter(|a| **a).count();
             let locked = on(&other);
-            other.unlock(Part::Arms).expect("locks");
+            other.mimo_mut().unlock(Part::Arms).expect("locks");
             assert_eq!(locked - on(&other), 8);
         }
     }
@@ -169,8 +169,8 @@ fn a_restored_moment_can_be_observed_and_goes_on_with_the_same_bits() {
             let expect = course(&mut env, 5);
             env.restore(&snapshot).expect("its own snapshot");
             assert_eq!(
-                env.refresh().expect("no divergence"),
-                other.refresh().expect("no divergence"),
+                env.by_hand().refresh().expect("no divergence"),
+                other.by_hand().refresh().expect("no divergence"),
                 "{kind}"
             );
             assert_eq!(
@@ -233,7 +233,7 @@ fn a_policy_that_is_resumed_sees_what_it_saw() {
         );
         let mut third = env.blueprint().env().expect("it is valid");
         third.restore(&snapshot).expect("its own snapshot");
-        let computed = third.refresh().expect("no divergence");
+        let computed = third.by_hand().refresh().expect("no divergence");
         let resumed = other.observation();
         assert_eq!((resumed.touch, resumed.pain), (computed.touch, computed.pain));
         assert_eq!(other.state().xpos, third.state().xpos);
@@ -267,10 +267,10 @@ fn the_observation_is_of_one_moment() {
         .proprioception()
         .range(ProprioceptionComponent::Angles)
         .expect("on");
-    let now = env.refresh().expect("no divergence").proprioception[range.start];
+    let now = env.by_hand().refresh().expect("no divergence").proprioception[range.start];
     assert_eq!(now, qpos[joint]);
     env.state_mut().qpos[joint] = f64::NAN;
-    assert!(env.refresh().is_err() && !env.by_hand().ready());
+    assert!(env.by_hand().refresh().is_err() && !env.by_hand().ready());
 }
 
 #[test]
@@ -339,7 +339,9 @@ fn faces_change_pictures_alone() {
         blueprint.env().expect("an environment"),
     );
     // before the first reset, too
-    env.swap_facial_expression(FacialExpression::Sad).expect("a face");
+    env.mimo_mut()
+        .swap_facial_expression(FacialExpression::Sad)
+        .expect("a face");
     let picture = |env: &Env| {
         let mut viewer = Viewer::new(env.blueprint()).expect("a viewer");
         viewer.draw(env, "closeup", 96, 96).expect("a picture").to_vec()
@@ -348,7 +350,7 @@ fn faces_change_pictures_alone() {
     env.reset(Some(3)).expect("no divergence");
     let mut seen = Vec::new();
     for (k, face) in FacialExpression::ALL.iter().enumerate().skip(1) {
-        env.swap_facial_expression(*face).expect("a face");
+        env.mimo_mut().swap_facial_expression(*face).expect("a face");
         assert_eq!(env.observation(), plain.observation(), "{face}");
         let (face_of_his, usual) = (picture(&env), picture(&plain));
         assert!(face_of_his != usual, "{face}");

@@ -42,7 +42,7 @@ fn course(env: &mut Env, steps: usize) -> Vec<String> {
     let mut action = Vec::new();
     let mut seen = Vec::new();
     for _ in 0..steps {
-        if env.over() {
+        if env.last_step().over() {
             env.reset(None).expect("no divergence");
         }
         env.sample_action(&mut action);
@@ -107,7 +107,7 @@ fn rewards_follow_from_goals_to_the_bit() {
             let (mut rewards, mut achieved, mut desired, mut terms) = (vec![], vec![], vec![], vec![]);
             let mut action = Vec::new();
             for _ in 0..60 {
-                if env.over() {
+                if env.last_step().over() {
                     env.reset(None).expect("no divergence");
                 }
                 env.sample_action(&mut action);
@@ -123,7 +123,9 @@ fn rewards_follow_from_goals_to_the_bit() {
                 desired,
                 terms: &terms,
             };
-            env.compute_reward(all(&desired), &mut found).expect("they fit");
+            env.blueprint()
+                .compute_reward(all(&desired), &mut found)
+                .expect("they fit");
             assert_eq!(found, rewards, "{behavior}, {compat}");
 
             // hindsight: every step gets the goal that a later one achieved
@@ -132,7 +134,9 @@ fn rewards_follow_from_goals_to_the_bit() {
             let hindsight: Vec<f64> = (0..n)
                 .flat_map(|k| achieved[later(k) * len..][..len].to_vec())
                 .collect();
-            env.compute_reward(all(&hindsight), &mut found).expect("they fit");
+            env.blueprint()
+                .compute_reward(all(&hindsight), &mut found)
+                .expect("they fit");
             let width = terms.len() / n;
             for (k, &together) in found.iter().enumerate() {
                 let mut alone = [0.0];
@@ -141,7 +145,7 @@ fn rewards_follow_from_goals_to_the_bit() {
                     desired: &hindsight[k * len..][..len],
                     terms: &terms[k * width..][..width],
                 };
-                env.compute_reward(row, &mut alone).expect("they fit");
+                env.blueprint().compute_reward(row, &mut alone).expect("they fit");
                 assert_eq!(alone[0], together, "{behavior}, step {k}");
             }
         }
@@ -162,9 +166,13 @@ fn hindsight_makes_successes_of_failures() {
         desired,
         terms: goal.terms,
     };
-    env.compute_reward(row(&touched, &hip), &mut reward).expect("it fits");
+    env.blueprint()
+        .compute_reward(row(&touched, &hip), &mut reward)
+        .expect("it fits");
     assert_eq!(reward, [500.0]);
-    env.compute_reward(row(&[0.0; 37], &hip), &mut reward).expect("it fits");
+    env.blueprint()
+        .compute_reward(row(&[0.0; 37], &hip), &mut reward)
+        .expect("it fits");
     assert!(reward[0] < 0.0);
 }
 
@@ -209,7 +217,10 @@ fn episodes_of_a_vector_are_those_of_environments_alone() {
                 assert_eq!(&terms[row * width..][..width], env.goal().terms);
                 let outcome = env.info().behavior.task().map(|task| task.outcome);
                 assert_eq!(batch.infos.outcomes.map(|o| o[row]), outcome);
-                assert!(!env.over(), "{behavior}: ten steps are too few to end an episode");
+                assert!(
+                    !env.last_step().over(),
+                    "{behavior}: ten steps are too few to end an episode"
+                );
             }
         }
     }
@@ -256,7 +267,7 @@ fn contacts_of_the_last_episode_do_not_count() {
     let before = env.snapshot();
     let contacts = |env: &Env| {
         let mut memory = Vec::new();
-        env.task().save(&mut memory);
+        env.by_hand().task().save(&mut memory);
         memory[5..105].to_vec()
     };
     assert_eq!(contacts(&env), [0.0; 100]);
@@ -398,9 +409,9 @@ fn conflicting_keys_are_refused() {
 fn goals_of_a_wrong_shape_are_refused() {
     let mut env = task(Behavior::Standup);
     env.reset(Some(0)).expect("no divergence");
-    let error = env.set_goal(&[0.1, 0.2]).expect_err("too long").to_string();
+    let error = env.by_hand().set_goal(&[0.1, 0.2]).expect_err("too long").to_string();
     assert!(error.contains("desired_goal has 2 values"), "{error}");
-    assert!(env.set_goal(&[f64::NAN]).is_err());
+    assert!(env.by_hand().set_goal(&[f64::NAN]).is_err());
     let goal = Goal {
         achieved: &[0.1, 0.2],
         desired: &[0.5],
@@ -411,6 +422,6 @@ fn goals_of_a_wrong_shape_are_refused() {
         .expect_err("too short")
         .to_string();
     assert!(error.contains("desired has 1 values"), "{error}");
-    env.set_goal(&[0.1]).expect("it fits");
+    env.by_hand().set_goal(&[0.1]).expect("it fits");
     assert!(env.info().behavior.task().is_some_and(|task| task.outcome.is_success));
 }

@@ -118,7 +118,7 @@ fn eyes_of_many_environments_are_drawn_together() {
             // what a step draws
             env.senses_mut().defer_vision(false);
             let (qpos, qvel) = (env.state().qpos.clone(), env.state().qvel.clone());
-            env.set_state(&qpos, &qvel).unwrap();
+            env.by_hand().set_state(&qpos, &qvel).unwrap();
             let stepped = env.observation().eye_right.unwrap().to_vec();
             let again = gpu.lock().unwrap().draw::<Rgb>(&eyes_of(env)).unwrap();
             assert_same(&gpu, &stepped, again.get(1).unwrap());

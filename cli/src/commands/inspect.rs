@@ -107,7 +107,7 @@ impl Inspect {
             let one_step = !recording.qpos.is_empty();
             replay(&mut env, &recording, one_step)?;
         } else {
-            env.reset_to(blueprint.init_qpos(), blueprint.init_qvel())?;
+            env.by_hand().reset_to(blueprint.init_qpos(), blueprint.init_qvel())?;
         }
         let s = env.state();
         let felt = if self.state.is_some() {
@@ -231,7 +231,7 @@ fn target(model: &Model, actuator: usize) -> &String {
 fn write_spaces(out: &mut impl Write, env: &Env) -> io::Result<()> {
     let space = env.action_space();
     writeln!(out, "\nAction space: {} numbers (f32)", space.len())?;
-    for (i, name) in env.actuation().action_names(env.model()).iter().enumerate() {
+    for (i, name) in env.blueprint().actuation().action_names(env.model()).iter().enumerate() {
         writeln!(out, "{i:>4} {name:44} {:>12} {:>12}", space.low()[i], space.high()[i])?;
     }
     writeln!(out, "\nObservation space")?;
@@ -261,7 +261,7 @@ fn write_observation(out: &mut impl Write, env: &Env) -> io::Result<()> {
         writeln!(out, "    {:4}..{:4} {name:10} {what}", range.start, range.end)?;
     }
     writeln!(out, "  entry by entry")?;
-    for entry in proprioception.entries(env.model(), env.actuation()) {
+    for entry in proprioception.entries(env.model(), env.blueprint().actuation()) {
         let (range, component) = (entry.range, entry.component.name());
         writeln!(
             out,

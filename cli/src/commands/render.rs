@@ -78,15 +78,15 @@ impl Render {
                         path.display()
                     )
                 };
-                env.reset_to(&qpos, &qvel).map_err(misfit)?;
+                env.by_hand().reset_to(&qpos, &qvel).map_err(misfit)?;
             }
             None => {
                 let blueprint = env.blueprint().clone();
-                env.reset_to(blueprint.init_qpos(), blueprint.init_qvel())?;
+                env.by_hand().reset_to(blueprint.init_qpos(), blueprint.init_qvel())?;
             }
         }
         if self.observed {
-            env.look()?;
+            env.senses_mut().look()?;
             return self.draw_observed(&env);
         }
         let size = self.size.unwrap_or(env.config().render_size as usize);

@@ -92,7 +92,8 @@ impl Run {
         say!("{}", description(&env))?;
         let clock = Arc::new(Mutex::new(Clock::new()));
         let probe = clock.clone();
-        env.set_probe(Some(Arc::new(move |stage| lock(&probe).enter(stage))));
+        env.by_hand()
+            .set_probe(Some(Arc::new(move |stage| lock(&probe).enter(stage))));
 
         let length = self.steps.unwrap_or(config.max_episode_steps);
         let bar = progress_bar(self.episodes.saturating_mul(length), self.quiet)?;
@@ -204,7 +205,7 @@ fn description(env: &Env) -> String {
         config.behavior,
         config.actuation_model,
         env.senses().proprioception().joints().len(),
-        env.actuation().actuators().len(),
+        env.blueprint().actuation().actuators().len(),
         spaces.iter().map(|s| s.shape.iter().product::<usize>()).sum::<usize>(),
     )
 }
@@ -249,7 +250,7 @@ impl Tally {
             if k % 16 == 15 {
                 bar.inc(16);
             }
-            if env.over() {
+            if env.last_step().over() {
                 break;
             }
         }

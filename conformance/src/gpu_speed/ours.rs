@@ -61,7 +61,7 @@ impl Seen {
         let qpos = npz.get_f64("qpos").map_err(|e| e.to_string())?;
         let mut states = Vec::new();
         for qpos in qpos.data.chunks_exact(qpos.shape[1]) {
-            env.reset_to(qpos, &qvel).map_err(|e| e.to_string())?;
+            env.by_hand().reset_to(qpos, &qvel).map_err(|e| e.to_string())?;
             states.push(env.state().clone());
         }
         let scenery = env.blueprint().scenery().map_err(|e| e.to_string())?;

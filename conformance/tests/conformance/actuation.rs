@@ -20,7 +20,7 @@ fn resets_are_those_of_the_reference() {
     for run in example_runs() {
         let after = run.after_reset();
         let mut env = run.blueprint().env().expect("the environment builds");
-        env.seed_action_space(0);
+        env.by_hand().seed_action_space(0);
         env.reset(None).expect("no divergence");
         let ctrl = max_abs(&env.state().ctrl, &numbers(&after["ctrl"]));
         let observation = relative(env.observation().proprioception, &numbers(&after["obs"]));

@@ -262,9 +262,10 @@ fn no_age_floats_or_sinks() {
                 let mut env = blueprint.env().expect("an environment");
                 let posture = held_posture(blueprint.model());
                 let rest = vec![0.0; blueprint.model().nv];
-                env.reset_to(&posture, &rest).expect("a reset");
+                env.by_hand().reset_to(&posture, &rest).expect("a reset");
                 let (start, with) = deepest(&env);
-                env.reset_to(blueprint.init_qpos(), blueprint.init_qvel())
+                env.by_hand()
+                    .reset_to(blueprint.init_qpos(), blueprint.init_qvel())
                     .expect("a reset");
                 let (settled, on) = deepest(&env);
                 let (body, speed) = fastest(&env);

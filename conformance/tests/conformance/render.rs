@@ -1,5 +1,6 @@
 //! Pictures against MuJoCo 3.3.0's own renderer (OSMesa): of the embedded assets from `data/render_*.npz`, which
-//! `scripts/render_goldens.py` writes and describes, of `data/glass.xml`, `meshes.xml`, `skins.xml` and `strings.xml`, and of the original files from the recordings.
+//! `scripts/render_goldens.py` writes and describes, of `data/glass.xml`, `meshes.xml`, `skins.xml` and `strings.xml`, and of the original
+//! files from the recordings.
 
 use babybench::assets::{AssetSource, DirAssets, MemoryAssets};
 use babybench::config::{Config, Scene};
@@ -203,7 +204,8 @@ fn recorded_eyes_with_the_original_files() {
                 0 => start.to_vec(),
                 t => all[(t - 1) * n..t * n].to_vec(),
             };
-            env.reset_to(&before(&qpos, &qpos0, nq), &before(&qvel, &qvel0, nv))
+            env.by_hand()
+                .reset_to(&before(&qpos, &qpos0, nq), &before(&qvel, &qvel0, nv))
                 .expect("a state");
             let action: Vec<f32> = actions.data[t * na..(t + 1) * na].iter().map(|&v| v as f32).collect();
             let step = env.step(&action).expect("no divergence");

@@ -168,7 +168,8 @@ const OPEN: usize = 100;
 /// Distance of the starts of the floor, rad.
 const NUDGE: f64 = 1e-7;
 
-/// When written, the worst was 0.6 floors. The floor is how far the same replay gets from itself when it starts 1e-7 rad away in every joint, mean of two.
+/// When written, the worst was 0.6 floors. The floor is how far the same replay gets from itself when it starts 1e-7 rad away in every
+/// joint, mean of two.
 fn tasks_open_loop_stay_near_the_recording() {
     let mut missed = Vec::new();
     for g in Golden::all() {
@@ -230,7 +231,7 @@ fn tasks_settle_and_reset_as_in_the_kit() {
                 Behavior::Standup => {
                     let mut env = g.env();
                     let still = vec![0.0; env.model().nv];
-                    env.reset_to(row(&set, e, nq), &still).expect("a state");
+                    env.by_hand().reset_to(row(&set, e, nq), &still).expect("a state");
                     for _ in 0..100 {
                         env.by_hand().physics_step().expect("a step");
                     }

@@ -67,7 +67,7 @@ pub enum SnapshotError {
         /// The fault.
         what: &'static str,
     },
-    /// Taken with other values of keys of the configuration, or with another model ([`Env::change_model`](crate::Env::change_model)).
+    /// Taken with other values of keys of the configuration, or with another model ([`ModelMut::change`](crate::env::ModelMut::change)).
     #[error("the snapshot was taken with another configuration: {differences}")]
     OtherConfiguration {
         /// The differences: each key with its value then and now.

@@ -66,7 +66,7 @@ impl Goals {
     }
 }
 
-/// Computes the reward of each row of goals: see [`Env::compute_reward`](crate::Env::compute_reward).
+/// Computes the reward of each row of goals: see [`Blueprint::compute_reward`](crate::Blueprint::compute_reward).
 pub(in crate::env) fn rewards(
     task: &dyn Task,
     sizes: TaskSizes,

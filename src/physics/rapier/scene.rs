@@ -50,7 +50,7 @@ pub struct SceneContact {
 }
 
 /// A mirror of a model in Rapier's sets, for ray casts, shape queries and debug rendering, which
-/// `Env::rapier_scene` of babybench makes for an environment.
+/// `Blueprint::rapier_scene` of babybench makes of a state.
 ///
 /// [`RapierScene::sync`] gives it the poses of a state; nothing flows back. Bodies are kinematic (fixed where nothing
 /// moves them); `user_data` of a body and of a collider is the id of the body and of the geom. Rapier's collision pipeline

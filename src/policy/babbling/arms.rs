@@ -34,7 +34,7 @@ impl Arms {
             let skin = layout.bodies().iter().any(|skin| skin.body == body);
             skin.then_some(body)
         });
-        let actuators = env.actuation().actuators();
+        let actuators = env.blueprint().actuation().actuators();
         let space = env.action_space().clone();
         let arm = |hand: usize| {
             let (own, other) = (palms[hand], palms[1 - hand]);
@@ -46,7 +46,7 @@ impl Arms {
                 above || model.in_subtree(body, own)
             };
             // muscles have several blocks of numbers; actuators of other bodies are at the end
-            let own_numbers = space.len() - env.actuation().extra_actuators().len().min(space.len());
+            let own_numbers = space.len() - env.blueprint().actuation().extra_actuators().len().min(space.len());
             let all = (0..own_numbers).filter(|d| actuators.get(d % actuators.len().max(1)).is_some_and(|&a| moves(a)));
             all.collect()
         };

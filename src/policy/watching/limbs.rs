@@ -95,7 +95,7 @@ impl DrivenJoints {
                 range: model.jnt_range[joint],
             })
         };
-        let drives: Option<Vec<DrivenJoint>> = env.actuation().actuators().iter().map(drive).collect();
+        let drives: Option<Vec<DrivenJoint>> = env.blueprint().actuation().actuators().iter().map(drive).collect();
         let drives =
             drives.ok_or_else(|| PolicyError::Other("watching needs to feel all joints that it moves".into()))?;
         for hand in 0..HANDS {
@@ -116,16 +116,15 @@ impl DrivenJoints {
     /// Returns whether an environment has the same body.
     pub(super) fn fits(&self, env: &Env) -> bool {
         let model = env.model();
-        self.space.len() == env.action_space().len() && env.actuation().actuators().len() == self.drives.len() && {
-            let ranges = env
-                .actuation()
-                .actuators()
-                .iter()
-                .map(|&a| model.jnt_range.get(model.actuator_trnid[a]));
-            ranges
-                .zip(&self.drives)
-                .all(|(range, drive)| range == Some(&drive.range))
-        }
+        self.space.len() == env.action_space().len()
+            && env.blueprint().actuation().actuators().len() == self.drives.len()
+            && {
+                let actuators = env.blueprint().actuation().actuators();
+                let ranges = actuators.iter().map(|&a| model.jnt_range.get(model.actuator_trnid[a]));
+                ranges
+                    .zip(&self.drives)
+                    .all(|(range, drive)| range == Some(&drive.range))
+            }
     }
 
     /// Returns the limb of each number of a posture.

@@ -65,7 +65,7 @@ pub fn play_motion(
         MotionMode::Tracking => Some(Tracker::new(env)?),
     };
     course.at(0.0, dt, &mut qpos, &mut qvel);
-    env.set_state(&qpos, &qvel)?;
+    env.by_hand().set_state(&qpos, &qvel)?;
     let mut recorder = recorder.map(|(recorder, episode)| {
         recorder.begin(env, episode);
         recorder
@@ -78,7 +78,7 @@ pub fn play_motion(
             None => {
                 env.by_hand().show(&qpos, &qvel)?;
                 if let Some(recorder) = &mut recorder {
-                    env.look()?;
+                    env.senses_mut().look()?;
                     recorder.note(env, &still)?;
                 }
             }

@@ -31,7 +31,7 @@ impl Tracker {
     /// # Errors
     /// Muscles.
     pub fn new(env: &Env) -> Result<Self, MotionError> {
-        let (model, actuation) = (env.model(), env.actuation());
+        let (model, actuation) = (env.model(), env.blueprint().actuation());
         let servos = match env.config().actuation_model {
             ActuationModel::SpringDamper => false,
             ActuationModel::Positional => true,

@@ -119,7 +119,7 @@ impl Manifest {
             fovy: left,
             fovy_right: right.filter(|_| right != left),
             joints: limb_joints(env),
-            actions: env.actuation().action_names(model),
+            actions: env.blueprint().actuation().action_names(model),
             bodies: model.body_name.clone(),
             geoms: geoms(model),
             arrays: BTreeMap::new(),

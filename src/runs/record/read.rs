@@ -131,7 +131,7 @@ impl Record {
         let described = self.manifest.episodes.iter().find(|e| e.episode == episode);
         let age = described.and_then(|e| e.age).unwrap_or(self.manifest.configuration.age);
         if env.config().age != age {
-            env.set_age(age)?;
+            env.mimo_mut().set_age(age)?;
         }
         let mut changes = Vec::new();
         for array in npz.arrays() {
@@ -139,16 +139,16 @@ impl Record {
                 changes.push((changed.to_string(), npz.get_f64(&array.name)?.data));
             }
         }
-        env.set_changed_numbers(&changes)?;
+        env.model_mut().set_changed_numbers(&changes)?;
         env.restore(&start).map_err(snapshot)?;
         let (mut action, mut first_difference) = (Vec::with_capacity(na), None);
         for (t, &expected) in checksums.iter().enumerate() {
             action.clear();
             action.extend(actions.data[t * na..(t + 1) * na].iter().map(|&v| v as f32));
             // the policy's random numbers are not drawn again
-            env.draw_from(drawn.data[t] as u64);
+            env.by_hand().draw_from(drawn.data[t] as u64);
             env.step(&action)?;
-            env.look()?;
+            env.senses_mut().look()?;
             if first_difference.is_none() && checksum(env) != expected {
                 first_difference = Some(t as u64);
             }

@@ -89,7 +89,7 @@ impl EpisodeRows {
         self.dt = env.blueprint().dt();
         self.columns = [env.action_space().len(), state.qpos.len(), state.qvel.len()];
         self.snapshot = env.snapshot().as_bytes().to_vec();
-        self.changes = env.changed_numbers();
+        self.changes = env.blueprint().changed_numbers();
         self.qpos0.clone_from(&state.qpos);
         self.qvel0.clone_from(&state.qvel);
         self.activity0.clone_from(&state.act);

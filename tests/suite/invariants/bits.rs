@@ -140,7 +140,7 @@ fn a_copied_state_continues_with_every_actuation_model_and_engine() {
                 let model = env.model().clone();
                 let mut start = env.state().clone();
                 let mut original = env.blueprint().engine();
-                env.actuation().set_action(&model, &mut start, &first);
+                env.blueprint().actuation().set_action(&model, &mut start, &first);
                 original.step(&mut start).expect("no divergence");
                 let run = |mut s: State| {
                     let actuation = actuation::build(&model, env.config()).expect("the actuators fit");
@@ -154,14 +154,14 @@ fn a_copied_state_continues_with_every_actuation_model_and_engine() {
                     let cost = actuation.cost(&model, &s);
                     (s, seen, cost)
                 };
-                let mut part = env.engine().new_state();
+                let mut part = env.blueprint().engine().new_state();
                 part.copy_dynamic_from(&start);
                 let (whole, part) = (run(start.clone()), run(part));
                 // the original, by the engine that began
-                let actuation = env.actuation();
+                let actuation = env.blueprint().actuation();
                 actuation.substep(&model, &mut start);
                 original.step(&mut start).expect("no divergence");
-                env.actuation().set_action(&model, &mut start, &second);
+                env.blueprint().actuation().set_action(&model, &mut start, &second);
                 original.step(&mut start).expect("no divergence");
                 let what = format!("{engine:?} {actuation_model} {compat}");
                 assert_same_bits(&start, &whole.0, &what);

@@ -315,7 +315,7 @@ fn clear_each(config: Config, goes_on: &[usize]) {
                 );
 
                 let start = [env.blueprint().init_qpos(), env.blueprint().init_qvel()].map(<[f64]>::to_vec);
-                assert!(env.set_state(&start[0], &start[1]).is_err(), "vector {k}");
+                assert!(env.by_hand().set_state(&start[0], &start[1]).is_err(), "vector {k}");
                 env.restore(&before).expect("room for what it holds");
                 env.step(&action).expect("a state that is whole again");
             }
@@ -370,21 +370,21 @@ fn reset_to_refuses_states_that_do_not_fit() {
         env.blueprint().init_qvel().to_vec(),
     );
     assert!(matches!(
-        env.reset_to(&qpos[1..], &qvel),
+        env.by_hand().reset_to(&qpos[1..], &qvel),
         Err(EnvError::StateLength { what: "qpos", .. })
     ));
     assert!(matches!(
-        env.reset_to(&qpos, &qvel[1..]),
+        env.by_hand().reset_to(&qpos, &qvel[1..]),
         Err(EnvError::StateLength { what: "qvel", .. })
     ));
     let mut bad = qpos.clone();
     bad[10] = f64::NAN;
     assert!(matches!(
-        env.reset_to(&bad, &qvel),
+        env.by_hand().reset_to(&bad, &qvel),
         Err(EnvError::Engine(EngineError::NotFinite { .. }))
     ));
     let action = vec![0.0; env.action_space().len()];
     assert!(matches!(env.step(&action), Err(EnvError::NotReset)));
-    env.reset_to(&qpos, &qvel).expect("the settled state");
+    env.by_hand().reset_to(&qpos, &qvel).expect("the settled state");
     env.step(&action).expect("no divergence");
 }

@@ -205,7 +205,7 @@ fn joints_held_by_the_scene_keep_their_targets_when_locked() {
 fn a_seed_of_reset_counts_and_in_reference_only_that_of_the_action_space() {
     let start = |env: &mut babybench::Env, seed, space| {
         if let Some(s) = space {
-            env.seed_action_space(s);
+            env.by_hand().seed_action_space(s);
         }
         env.reset(seed).expect("no divergence");
         env.state().qpos.clone()
@@ -246,8 +246,8 @@ fn random_actions_equal_those_of_the_same_seed_and_stay_in_the_space() {
     let [mut a, mut b] = [0, 1].map(|_| shared.env().expect("available"));
     let (mut x, mut y) = (Vec::new(), Vec::new());
     for seed in [0, 1, u64::MAX] {
-        a.seed_action_space(seed);
-        b.seed_action_space(seed);
+        a.by_hand().seed_action_space(seed);
+        b.by_hand().seed_action_space(seed);
         for _ in 0..50 {
             a.sample_action(&mut x);
             b.sample_action(&mut y);

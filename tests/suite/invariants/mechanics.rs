@@ -76,7 +76,10 @@ fn torque_sensors_feel_exactly_what_acts_through_the_joint() {
         for _ in 0..60 {
             random_steps(&mut env, 1);
             let s = env.state();
-            for (d, [r, e]) in torque_residuals(&model, env.engine(), s).into_iter().enumerate() {
+            for (d, [r, e]) in torque_residuals(&model, &*env.blueprint().engine(), s)
+                .into_iter()
+                .enumerate()
+            {
                 worse(&mut at[usize::from(!hinge[d])], r);
                 worse(&mut rest, r - e);
                 worse(&mut solver, e);
@@ -107,7 +110,7 @@ fn in_reference_the_weld_of_the_crib_counts_double() {
     env.reset(Some(0)).expect("no divergence");
     random_steps(&mut env, 20);
     let model = env.model().clone();
-    let residuals = torque_residuals(&model, env.engine(), env.state());
+    let residuals = torque_residuals(&model, &*env.blueprint().engine(), env.state());
     let residuals: Vec<f64> = residuals.iter().map(|r| r[0]).collect();
     for (d, r) in residuals.iter().enumerate().filter(|(_, r)| r.abs() > 1e-6) {
         let body = &model.body_name[model.dof_bodyid[d]];
@@ -181,7 +184,7 @@ fn energy_does_not_grow_while_nothing_drives() {
     let mut last = (0.0, 0.0);
     for _ in 0..400 {
         env.step(&action).expect("no divergence");
-        last = energy(env.engine(), env.state());
+        last = energy(&*env.blueprint().engine(), env.state());
         let total = last.0 + last.1;
         let start = *first.get_or_insert(total);
         assert!(total <= start + 0.05, "energy rose from {start} to {total} J");

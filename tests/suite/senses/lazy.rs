@@ -28,7 +28,7 @@ fn lazy(config: Config) -> Config {
 
 /// The senses of a moment, with pictures.
 fn looked(env: &mut Env) -> Vec<String> {
-    env.look().expect("a renderer");
+    env.senses_mut().look().expect("a renderer");
     seen(env)
 }
 
@@ -78,8 +78,8 @@ fn snapshots_of_one_fit_the_other() {
     every.restore(&of_some).expect("it fits");
     some.restore(&of_every).expect("it fits");
     assert!(looked(&mut some) == seen(&every) && some.observation().eye_left.is_none());
-    every.refresh().expect("no divergence");
-    some.refresh().expect("no divergence");
+    every.by_hand().refresh().expect("no divergence");
+    some.by_hand().refresh().expect("no divergence");
     assert!(looked(&mut some) == seen(&every), "refreshed");
     every.by_hand().resume(&of_some).expect("it fits");
     some.by_hand().resume(&of_every).expect("it fits");
@@ -103,13 +103,14 @@ fn a_picture_is_gone_when_the_scene_has_moved_on() {
     let mut parts = env.by_hand();
     parts.set_action(&action).expect("a valid action");
     parts.physics_step().expect("no divergence");
-    assert!(env.look().expect("a renderer").eye_left.is_none());
+    assert!(env.senses_mut().look().expect("a renderer").eye_left.is_none());
     env.by_hand().observe().expect("a renderer");
-    assert!(env.look().expect("a renderer").eye_left.is_some());
+    assert!(env.senses_mut().look().expect("a renderer").eye_left.is_some());
     let (qpos, qvel) = (env.state().qpos.clone(), env.state().qvel.clone());
-    env.set_state(&qpos, &qvel).expect("no divergence");
+    env.by_hand().set_state(&qpos, &qvel).expect("no divergence");
     let picture = env.clone().look().expect("a renderer").eye_left.map(<[u8]>::to_vec);
-    env.change_model(|model| model.geom_size.iter_mut().for_each(|size| size[0] *= 1.1))
+    env.model_mut()
+        .change(|model| model.geom_size.iter_mut().for_each(|size| size[0] *= 1.1))
         .expect("they may change");
     assert_eq!(
         env.observation().eye_left,
@@ -282,7 +283,7 @@ fn eyes_that_are_drawn_together_are_drawn_once() {
     draw_eyes(&mut envs).expect("a renderer");
     draw_eyes(&mut envs).expect("a renderer");
     for env in &mut envs {
-        assert!(env.look().expect("a renderer").eye_left.is_some());
+        assert!(env.senses_mut().look().expect("a renderer").eye_left.is_some());
         assert_eq!(env.senses().pictures_drawn(), 1);
     }
 }

@@ -37,7 +37,9 @@ fn recorded() -> (Env, Recording) {
 /// All that a replay keeps of what was observed, as text, and the rows to replay it one step at a time.
 fn by_hand(env: &mut Env, recording: &mut Recording) -> [String; 6] {
     env.reset(Some(5)).expect("no divergence");
-    env.reset_to(&recording.qpos0, &recording.qvel0).expect("no divergence");
+    env.by_hand()
+        .reset_to(&recording.qpos0, &recording.qvel0)
+        .expect("no divergence");
     let (mut body, mut pooled, mut pain, mut balance) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
     let (mut eyes, mut grey) = (Vec::new(), Vec::new());
     for action in recording.actions.chunks_exact(recording.actions.len() / STEPS) {

@@ -116,7 +116,7 @@ fn a_user_adds_a_transform() {
         env.senses().touch().expect("touch").values()[3] != 5.0,
         "the skin itself stays"
     );
-    env.set_age(Some(6.0)).expect("he grows");
+    env.mimo_mut().set_age(Some(6.0)).expect("he grows");
     assert_eq!(chain(&env), ["delay of 1 step (5 ms)", "marks"]);
 
     let mut blind = crate::common::env(body_only("self_touch"));

@@ -63,7 +63,7 @@ fn a_slow_environment_does_not_hold_the_others() {
     let gate = Arc::new((Mutex::new(false), Condvar::new()));
     let at_gate = gate.clone();
     let slow = envs.env_mut(0).expect("it is here");
-    slow.set_probe(Some(Arc::new(move |_| {
+    slow.by_hand().set_probe(Some(Arc::new(move |_| {
         let open = at_gate.0.lock().expect("no panic");
         drop(at_gate.1.wait_while(open, |open| !*open).expect("no panic"));
     })));

@@ -60,7 +60,7 @@ fn a_panic_reaches_the_caller_and_the_others_go_on() {
         let mut envs = vector(&blueprint, 4, threads, AutoresetMode::NextStep);
         envs.reset(0).expect("no divergence");
         let broken = envs.env_mut(2).expect("it is here");
-        broken.set_probe(Some(Arc::new(|stage| {
+        broken.by_hand().set_probe(Some(Arc::new(|stage| {
             assert!(stage != Some(EnvStage::Senses), "a probe that panics")
         })));
         let actions = vec![0.1; 4 * envs.single_action_space().len()];
@@ -76,6 +76,7 @@ fn a_panic_reaches_the_caller_and_the_others_go_on() {
             .expect("it is made anew");
         envs.env_mut(2)
             .expect("it is here")
+            .by_hand()
             .set_probe(Some(Arc::new(|_| panic!("again"))));
         envs.send(&actions, &[0, 1, 2, 3]).expect("all are here");
         let mut back = Vec::new();

@@ -50,13 +50,13 @@ impl Core {
     /// Starts an episode from positions and velocities.
     #[wasm_bindgen(js_name = resetTo)]
     pub fn reset_to(&mut self, qpos: &[f64], qvel: &[f64]) -> Result<(), JsValue> {
-        done(self.env.reset_to(qpos, qvel))
+        done(self.env.by_hand().reset_to(qpos, qvel))
     }
 
     /// Sets positions and velocities in the middle of an episode.
     #[wasm_bindgen(js_name = setState)]
     pub fn set_state(&mut self, qpos: &[f64], qvel: &[f64]) -> Result<(), JsValue> {
-        done(self.env.set_state(qpos, qvel))
+        done(self.env.by_hand().set_state(qpos, qvel))
     }
 
     /// Sets the activations of the muscles.
@@ -80,7 +80,7 @@ impl Core {
     /// Seeds the generator of random actions.
     #[wasm_bindgen(js_name = seedActionSpace)]
     pub fn seed_action_space(&mut self, seed: u64) {
-        self.env.seed_action_space(seed);
+        self.env.by_hand().seed_action_space(seed);
     }
 
     /// Sets whether the eyes are drawn on demand only, by `drawEyes`.
@@ -199,7 +199,7 @@ impl Core {
             .env
             .senses()
             .proprioception()
-            .entries(self.env.model(), self.env.actuation());
+            .entries(self.env.model(), self.env.blueprint().actuation());
         list(entries.iter().map(|e| {
             object([
                 ("component", e.component.name().into()),
@@ -267,13 +267,13 @@ impl Core {
 
     /// Locks a joint, or all joints of a part, at an angle in rad.
     pub fn lock(&mut self, target: &str, angle: f64) -> Result<JsValue, JsValue> {
-        let report = self.env.lock(lock_target(target), angle);
+        let report = self.env.mimo_mut().lock(lock_target(target), angle);
         report.map(|r| self.report(&r)).map_err(|e| js::env_error(&e))
     }
 
     /// Unlocks a joint, or all joints of a part.
     pub fn unlock(&mut self, target: &str) -> Result<JsValue, JsValue> {
-        let report = self.env.unlock(lock_target(target));
+        let report = self.env.mimo_mut().unlock(lock_target(target));
         report.map(|r| self.report(&r)).map_err(|e| js::env_error(&e))
     }
 
@@ -281,7 +281,7 @@ impl Core {
     #[wasm_bindgen(js_name = swapFacialExpression)]
     pub fn swap_facial_expression(&mut self, name: &str) -> Result<String, JsValue> {
         let face = FacialExpression::from_name(name).ok_or_else(|| js::error("there is no such face"))?;
-        done(self.env.swap_facial_expression(face))?;
+        done(self.env.mimo_mut().swap_facial_expression(face))?;
         (self.scenery, self.viewer) = (None, None);
         Ok(self.env.config().to_yaml())
     }

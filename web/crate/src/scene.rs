@@ -66,7 +66,10 @@ fn joint(m: &Model, j: usize) -> JsValue {
 /// Describes each number of an action; those of muscles come in two blocks of all actuators.
 fn actions(env: &Env) -> JsValue {
     let (m, space) = (env.model(), env.action_space());
-    let (names, driven) = (env.actuation().action_names(m), env.actuation().actuators());
+    let (names, driven) = (
+        env.blueprint().actuation().action_names(m),
+        env.blueprint().actuation().actuators(),
+    );
     let entries = names.iter().enumerate().map(|(k, name)| {
         let actuator = driven[k % driven.len().max(1)];
         // MIMo's all act on joints

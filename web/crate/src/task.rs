@@ -26,7 +26,7 @@ impl Core {
     /// Changes the desired goal of the episode.
     #[wasm_bindgen(js_name = setGoal)]
     pub fn set_goal(&mut self, desired: &[f64]) -> Result<(), JsValue> {
-        self.env.set_goal(desired).map_err(|e| js::env_error(&e))
+        self.env.by_hand().set_goal(desired).map_err(|e| js::env_error(&e))
     }
 
     /// Computes the rewards of rows of goals and terms.
@@ -44,7 +44,7 @@ impl Core {
             desired,
             terms,
         };
-        let computed = self.env.compute_reward(goals, &mut rewards);
+        let computed = self.env.blueprint().compute_reward(goals, &mut rewards);
         computed.map_err(|e| js_sys::Error::new(&e.to_string()))?;
         Ok(rewards)
     }

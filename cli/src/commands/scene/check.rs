@@ -31,7 +31,7 @@ impl Check {
         write_sizes(&mut out, &env)?;
         write_reach(&mut out, &env)?;
         let still = vec![0.0; blueprint.model().nv];
-        env.reset_to(&blueprint.model().qpos0, &still)?;
+        env.by_hand().reset_to(&blueprint.model().qpos0, &still)?;
         write_contacts(&mut out, &env)?;
         let unused = unused_attributes(blueprint.config(), &embedded())?;
         writeln!(out, "\nWithout effect here")?;

@@ -1,17 +1,55 @@
-//! Changes of age between two episodes, and of the face at any time.
+//! Changes of MIMo: locks, age and face.
 
 use crate::config::FacialExpression;
 use crate::env::{Env, EnvError};
+use crate::mimo::{LockReport, LockTarget};
 
-impl Env {
+/// MIMo in an environment, to change him: [`Env::mimo_mut`].
+#[derive(Debug)]
+pub struct MimoMut<'a> {
+    env: &'a mut Env,
+}
+
+impl MimoMut<'_> {
+    /// Locks a joint, or all joints of a part, at an angle in rad, from the next step on. Locks outlast resets. Locks of the
+    /// configuration can be moved and removed, too.
+    ///
+    /// ```
+    /// use babybench::config::Part;
+    /// use babybench::{Config, Env};
+    ///
+    /// let mut env = Env::new(Config { touch_active: false, vision_active: false, ..Config::default() })?;
+    /// env.reset(Some(0))?;
+    /// env.mimo_mut().lock(Part::Head, 0.0)?;
+    /// let elbow = env.mimo_mut().lock("robot:right_elbow", -1.2)?;
+    /// assert!(elbow.held.is_empty() && elbow.beyond_limits.is_empty());
+    /// env.mimo_mut().unlock(Part::Head)?;
+    /// # Ok::<(), babybench::EnvError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// A joint that does not exist or cannot be locked, or an angle that is not finite. Joints that the scene holds are listed in the
+    /// report and are not errors.
+    pub fn lock<'a>(&mut self, target: impl Into<LockTarget<'a>>, angle: f64) -> Result<LockReport, EnvError> {
+        self.env.physics.lock(self.env.blueprint.model(), target.into(), angle)
+    }
+
+    /// Unlocks a joint, or all joints of a part, from the next step on and for later episodes.
+    ///
+    /// # Errors
+    /// A joint that does not exist or cannot be locked.
+    pub fn unlock<'a>(&mut self, target: impl Into<LockTarget<'a>>) -> Result<LockReport, EnvError> {
+        self.env.physics.unlock(self.env.blueprint.model(), target.into())
+    }
+
     /// Changes MIMo's age, in months, between two episodes; `None` gives him the original proportions. The next call is a reset. Locks,
     /// the generator of random choices, added transforms and the probe remain. Names and ids are the same at every age.
     ///
     /// # Errors
     /// Those of [`Blueprint::with_age`](crate::Blueprint::with_age), which change nothing.
     pub fn set_age(&mut self, age: Option<f64>) -> Result<(), EnvError> {
-        let grown = self.grown(age)?;
-        self.become_grown(grown);
+        let grown = self.env.grown(age)?;
+        self.env.become_grown(grown);
         Ok(())
     }
 
@@ -23,7 +61,7 @@ impl Env {
     ///
     /// let mut env = Env::new(Config { touch_active: false, vision_active: false, ..Config::default() })?;
     /// env.reset(Some(0))?;
-    /// env.swap_facial_expression(FacialExpression::Happy)?;
+    /// env.mimo_mut().swap_facial_expression(FacialExpression::Happy)?;
     /// assert_eq!(env.config().facial_expression, FacialExpression::Happy);
     /// # Ok::<(), babybench::EnvError>(())
     /// ```
@@ -31,23 +69,31 @@ impl Env {
     /// # Errors
     /// Those of [`Blueprint::with_facial_expression`](crate::Blueprint::with_facial_expression), which change nothing.
     pub fn swap_facial_expression(&mut self, face: FacialExpression) -> Result<(), EnvError> {
-        if self.config().facial_expression == face {
+        let env = &mut *self.env;
+        if env.config().facial_expression == face {
             return Ok(());
         }
-        let other = self.blueprint.with_facial_expression(face)?.env()?;
-        let (snapshot, ready, details) = (self.snapshot(), self.ready(), self.info.details.clone());
-        let mut before = self.become_grown(other);
+        let other = env.blueprint.with_facial_expression(face)?.env()?;
+        let (snapshot, ready, details) = (env.snapshot(), env.ready(), env.info.details.clone());
+        let mut before = env.become_grown(other);
         // only pictures differ, so the environment's own snapshot fits
-        self.restore(&snapshot)?;
+        env.restore(&snapshot)?;
         if ready {
-            self.by_hand().resume(&snapshot)?;
-            self.info.details = details;
+            env.by_hand().resume(&snapshot)?;
+            env.info.details = details;
             // a step senses the contacts of its last physics step, not those of its final state
             if before.senses.known {
-                self.senses.take_felt(&mut before.senses);
+                env.senses.take_felt(&mut before.senses);
             }
         }
         Ok(())
+    }
+}
+
+impl Env {
+    /// Returns MIMo, to lock his joints and to change his age and face.
+    pub fn mimo_mut(&mut self) -> MimoMut<'_> {
+        MimoMut { env: self }
     }
 
     /// Makes an environment of the same configuration at another age.
@@ -64,7 +110,7 @@ impl Env {
             new.eq_offset.clone_from(&old.eq_offset);
         }
         std::mem::swap(&mut grown.rng, &mut self.rng);
-        grown.set_probe(self.probe.take());
+        grown.by_hand().set_probe(self.probe.take());
         if self.shares() {
             grown.share();
         }
