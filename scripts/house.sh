@@ -3,6 +3,7 @@
 # sense, the project's crates and those it depends on, features, hidden items, type names that are used twice, files that import each
 # other in circles, lines and comments by room, and what is long. The same tree prints the same text.
 #   scripts/house.sh
+# scripts/house_table.py prints how the counts have changed since a commit.
 # Needs Python 3, and cargo (for `cargo tree`; nothing is compiled), once the network for the index of crates.
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -21,6 +22,23 @@ required_of() { # TRAIT FILE: methods of a trait
 }
 crates() { # FEATURES: of a normal build, the library itself among them
   cargo tree --locked --package babybench --edges normal --prefix none --no-dedupe "$@" | sed 's/ (.*//' | sort -u | wc -l
+}
+
+action_path() { # the files of an action's path, each with its functions in the order of calls
+  cat <<'END'
+src/env/mod.rs step check_action check_numbers mark
+src/env/senses.rs begin_step
+src/env/task/scene.rs play set_action advance steps
+src/env/physics.rs check_shape parts note
+src/env/task/mod.rs before_step
+src/env/action_delay.rs pass
+src/sensors/transform/delay.rs pass
+src/actuation/spring_damper.rs set_action substep
+src/spaces/mod.rs clip
+src/env/engines.rs lend
+src/model/pool.rs lend
+src/env/paths.rs place
+END
 }
 
 # Reads Rust files that rustfmt has laid out: a function ends at the first brace that stands as far right as its first line, and unit tests
@@ -101,6 +119,15 @@ echo "public methods of TaskScene: $(methods_of TaskScene | wc -l)"
 echo "methods of the trait Task: $(required_of Task src/env/task/mod.rs)"
 echo "files that name the sense touch_pooled: $(git grep -l touch_pooled -- src python/src python/babybench_core web | wc -l)"
 git grep -l touch_pooled -- src python/src python/babybench_core web | sed 's/^/  /'
+
+title 'Files that an action passes: functions that run in Env::step before Engine::step, without those that only return a field'
+action_path | while read -r file functions; do
+  for name in $functions; do
+    grep -qE "fn $name(<.*>)?\(" "$file" || { echo "house: $file has no function $name" >&2; exit 1; }
+  done
+  printf '  %-34s %s\n' "$file" "$functions"
+done
+echo "files: $(action_path | wc -l) (delay.rs only with a motor delay, paths.rs only with mocap_motion)"
 
 title 'Crates of the library'
 echo "without features: $(crates --no-default-features)"

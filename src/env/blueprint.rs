@@ -3,15 +3,15 @@
 mod options;
 mod settled;
 mod surface;
+mod variants;
 
 pub use options::BlueprintOptions;
 
-use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use crate::actuation::{self, Actuation};
 use crate::assets::AssetSource;
-use crate::config::{ActuationModel, Config, EngineKind, FacialExpression, RendererKind};
+use crate::config::{Config, EngineKind, RendererKind};
 use crate::env::engines::Engines;
 use crate::env::paths::Paths;
 use crate::env::pipeline::effective;
@@ -20,7 +20,7 @@ use crate::env::task::{TaskSizes, of_config, rewards};
 use crate::env::{Env, EnvError, Goal, GoalError, Task};
 use crate::mimo::scene_assets;
 use crate::model::Model;
-use crate::physics::{Engine, Params, Shared};
+use crate::physics::{Engine, Params, Shared, State};
 use crate::render::{RenderError, RendererPool};
 use crate::sensors::transform::Sense;
 use crate::sensors::{Proprioception, SkinLayout, Vestibular};
@@ -201,102 +201,9 @@ impl Blueprint {
         })
     }
 
-    /// Returns the same blueprint with a model that a program has changed, without settling again. `changes` are the arrays that differ
-    /// from those of the scene.
-    pub(super) fn with_model(
-        &self,
-        model: Arc<Model>,
-        params: Shared<Params>,
-        changes: &BTreeMap<&'static str, &[f64]>,
-    ) -> Result<Self, EnvError> {
-        Ok(Self {
-            engines: Arc::new(Engines::new(&self.config, &model)?),
-            tables: SharedTables::new(&self.config, &model)?,
-            model,
-            params,
-            identity: Arc::new(self.origin.identity.with_changes(changes)),
-            ..self.clone()
-        })
-    }
-
     /// Returns the model and the parameters before a program changed the model.
     pub(super) fn origin(&self) -> (&Model, &Params) {
         (&self.origin.model, &self.origin.params)
-    }
-
-    /// Returns the same blueprint with another actuation model, settled again, on the same compiled scene if the actuators are the same.
-    ///
-    /// `spring_damper` and `muscle` share the scene's motors. Changes to and from `positional`, whose actuators are servos, compile the
-    /// scene again. Everything that is not an actuator keeps its number.
-    ///
-    /// # Errors
-    /// As [`Blueprint::with`].
-    pub fn with_actuation(&self, actuation_model: ActuationModel) -> Result<Self, EnvError> {
-        let config = Config {
-            actuation_model,
-            ..Config::clone(&self.config)
-        };
-        let servos = |a| a == ActuationModel::Positional;
-        let model = if servos(self.config.actuation_model) == servos(actuation_model) {
-            self.model.clone()
-        } else {
-            Arc::new(task_model(&config, &*self.task, &*self.surface.given)?)
-        };
-        let surface = SkinAndScenery {
-            // the actuators of a custom scene are among them
-            assets: scene_assets(&config, self.surface.given.clone())?,
-            ..self.surface.clone()
-        };
-        Self::settled(config, self.task.clone_task(), model, surface)
-    }
-
-    /// Returns a blueprint of the same configuration with MIMo at another age, months; `None` for the original proportions.
-    ///
-    /// Names and ids remain. So do the spaces, except for the length of touch, which follows the size of the body unless
-    /// [`Config::touch_grows`].
-    ///
-    /// # Errors
-    /// As [`Blueprint::with`].
-    pub fn with_age(&self, age: Option<f64>) -> Result<Self, EnvError> {
-        let config = Config {
-            age,
-            ..Config::clone(&self.config)
-        };
-        let options = BlueprintOptions {
-            task: Some(self.task.clone_task()),
-            assets: self.surface.given.clone(),
-        };
-        Self::with(config, options)
-    }
-
-    /// Returns a blueprint of the same configuration in which MIMo makes another face. Snapshots of both are exchangeable.
-    ///
-    /// # Errors
-    /// As [`Blueprint::with`]; assets without the texture of the face, `tex_head_NAME`. Without the feature `faces`, the assets must have
-    /// the pictures of all faces but the default one, as `tex/face_NAME.png`.
-    pub fn with_facial_expression(&self, facial_expression: FacialExpression) -> Result<Self, EnvError> {
-        let config = Config {
-            facial_expression,
-            ..Config::clone(&self.config)
-        };
-        let made = task_model(&config, &*self.task, &*self.surface.given)?;
-        // only pictures differ: changes by a program remain
-        let model = self.model.edited(|arrays| arrays.materials.clone_from(&made.materials));
-        let blueprint = Self {
-            config: Arc::new(config),
-            model: Arc::new(model),
-            surface: SkinAndScenery {
-                scenery: Arc::default(),
-                painting: RendererPool::default(),
-                gpu: Arc::default(),
-                ..self.surface.clone()
-            },
-            ..self.clone()
-        };
-        if blueprint.config.vision_active {
-            blueprint.scenery()?;
-        }
-        Ok(blueprint)
     }
 
     /// Returns the assets of the scene; see [`scene_assets`].
@@ -373,6 +280,15 @@ impl Blueprint {
     /// Creates an engine of the kind that the configuration asks for.
     pub fn engine(&self) -> Box<dyn Engine> {
         self.engines.make()
+    }
+
+    /// Creates the state of a new environment.
+    pub(super) fn new_state(&self) -> State {
+        let mut state = self.engines.reader().new_state();
+        self.actuation().prepare(&self.model, &mut state);
+        // shared from the start, because copies into an own allocation would stay unshared
+        state.params = self.params.clone();
+        state
     }
 
     /// Returns the engines of this blueprint's environments.

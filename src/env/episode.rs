@@ -2,17 +2,9 @@
 
 use crate::config::Compat;
 use crate::env::outcome::clear;
-use crate::env::task::Goals;
-use crate::env::{Env, EnvError, Observation, Task, TaskScene};
+use crate::env::task::StagedTask;
+use crate::env::{Env, EnvError, Observation};
 use crate::spaces::NumpyRng;
-
-/// The scene of an environment together with its task.
-pub(super) struct StagedTask<'a> {
-    pub scene: TaskScene<'a>,
-    pub task: &'a mut dyn Task,
-    pub goals: &'a mut Goals,
-    pub applied: &'a mut Vec<f32>,
-}
 
 /// The progress of an episode.
 #[derive(Clone, Copy, Debug, Default)]
@@ -49,31 +41,6 @@ impl Env {
         self.begin_episode()?;
         self.check_shared()?;
         Ok(self.observation())
-    }
-
-    /// Returns the scene together with its task.
-    pub(super) fn play(&mut self) -> StagedTask<'_> {
-        let (engine, state, last_call, base) = self.physics.parts();
-        let scene = TaskScene {
-            config: self.blueprint.config(),
-            model: self.blueprint.model(),
-            state,
-            rng: &mut self.rng,
-            engine,
-            last_call,
-            base,
-            actuation: self.blueprint.actuation(),
-            paths: self.blueprint.paths(),
-            delay: Some(&mut self.action_delay),
-            start: [self.blueprint.init_qpos(), self.blueprint.init_qvel()],
-            action: &mut self.action,
-        };
-        StagedTask {
-            scene,
-            task: &mut *self.task,
-            goals: &mut self.goals,
-            applied: &mut self.applied,
-        }
     }
 
     /// Returns whether a step may follow: there was a reset, and nothing has diverged since.

@@ -40,13 +40,6 @@ impl Senses {
     pub(super) fn wants_drawing(&self) -> bool {
         self.picture == PictureStatus::Waiting || !self.is_lazy()
     }
-
-    /// Drops a picture that was not requested, because the scene that it would show moves on.
-    pub(super) fn forget_picture(&mut self) {
-        if self.picture == PictureStatus::Waiting {
-            self.picture = PictureStatus::Gone;
-        }
-    }
 }
 
 impl<'a> SensesMut<'a> {

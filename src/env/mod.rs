@@ -9,7 +9,6 @@ mod checksum;
 mod clock;
 mod details;
 mod engines;
-mod env_state;
 mod episode;
 pub(crate) mod error;
 mod eyes;
@@ -74,17 +73,17 @@ pub use task::{
 pub(crate) use viewer::room_camera;
 pub use viewer::{ViewFrom, Viewer};
 
-pub(crate) use env_state::ScratchUse;
+pub(crate) use physics::ScratchUse;
 
 use crate::config::Config;
 use crate::model::Model;
 use crate::spaces::NumpyRng;
 use action_delay::ActionDelay;
-use episode::{Episode, StagedTask};
+use episode::Episode;
 use outcome::clear;
 use physics::Physics;
 use placed::check_vector;
-use task::{ActionTiming, Goals};
+use task::{ActionTiming, Goals, StagedTask};
 
 /// A BabyBench environment.
 ///
@@ -169,7 +168,7 @@ impl Env {
         let mut info = Info::default();
         clear(&*task, &mut info);
         Ok(Self {
-            physics: Physics::new(blueprint),
+            physics: Physics::new(blueprint.engines().clone(), blueprint.new_state()),
             action_delay: ActionDelay::new(config, actuation.action_space(), blueprint.action_delay()),
             senses: Senses::new(blueprint, blueprint.task_sizes())?,
             goals: Goals::new(blueprint.task_sizes()),
@@ -199,8 +198,7 @@ impl Env {
         self.physics.check_shape()?;
         self.mark(Some(EnvStage::Actuation));
         let frame_skip = self.blueprint.config().frame_skip;
-        self.senses.forget_picture();
-        self.senses.prepare();
+        self.senses.begin_step();
         let StagedTask {
             mut scene,
             task,
@@ -236,6 +234,14 @@ impl Env {
                 Some(index) => extra.get(index).copied(),
             }
         })
+    }
+
+    /// Calls the probe, if there is one, when a stage starts, or with `None` when the step is done.
+    #[inline]
+    fn mark(&self, stage: Option<EnvStage>) {
+        if let Some(probe) = &self.probe {
+            probe(stage);
+        }
     }
 
     /// Updates the behavior's counters.

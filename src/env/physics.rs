@@ -1,101 +1,181 @@
-//! The physics of an environment: the state that engines advance, and the parameters that a reset restores.
+//! The physics of an environment: its state, the engines that advance it, and the parameters that a reset restores.
+//!
+//! Most of a [`State`] is what every step computes anew: poses, inertias, contacts, constraint rows. If hundreds of environments took turns
+//! with a whole state each, every turn would load another one into the caches, though programs rarely read it. An environment of a vector
+//! therefore keeps only what decides how the run goes on, and works in a scratch state during a step or reset. A program that reads the rest
+//! gets it computed once more, with the same bits, by the call that computed it and from what that call began with ([`LastEngineCall`]).
+//!
+//! Transitions of [`StateStorage`]:
+//!
+//! ```text
+//!            share (a new environment)        begin                       end
+//!   Whole ---------------------------> Split -------> Working (a step) -------> Split
+//!                                      Split          read: computes the rest and keeps it until the next step
+//!   Whole <--------------------------- Split          change by a program: its computed quantities become the environment's own
+//!   Whole <--------------------------- Split          begin of a step, if a program has read it: it is likely to read it again
+//!   Whole ---------------------------> Working        begin of a reset, which overwrites the state
+//! ```
 
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
+use crate::env::EnvError;
 use crate::env::engines::{EngineSource, Engines};
-use crate::env::env_state::{EngineCall, EnvState, LastEngineCall, ScratchUse};
-use crate::env::{Blueprint, EnvError};
 use crate::mimo::{LockReport, LockTarget, lock, lock_of, unlock};
 use crate::model::Model;
 use crate::physics::{Engine, EngineError, Params, Shared, State};
 
+/// What the last call of an engine began with, as far as the call, or a task after it, has changed it.
+#[derive(Clone, Debug, Default)]
+pub(in crate::env) struct LastEngineCall {
+    call: EngineCall,
+    time: f64,
+    step: u64,
+    qpos: Vec<f64>,
+    qvel: Vec<f64>,
+    act: Vec<f64>,
+    qacc_warmstart: Vec<f64>,
+}
+
+/// A call of an engine.
+#[derive(Clone, Copy, Debug, Default)]
+pub(in crate::env) enum EngineCall {
+    /// There was none.
+    #[default]
+    None,
+    Forward,
+    Step,
+}
+
+impl LastEngineCall {
+    /// Notes what a call begins with.
+    pub fn note(&mut self, call: EngineCall, state: &State) {
+        (self.call, self.time, self.step) = (call, state.time, state.step);
+        self.qpos.clone_from(&state.qpos);
+        self.qvel.clone_from(&state.qvel);
+        self.act.clone_from(&state.act);
+        self.qacc_warmstart.clone_from(&state.qacc_warmstart);
+    }
+
+    /// Makes the call once more. A state that is as the call left it then has the same computed quantities.
+    fn repeat(&self, engines: &Engines, state: &mut State) {
+        if let EngineCall::None = self.call {
+            return;
+        }
+        (state.time, state.step) = (self.time, self.step);
+        state.qpos.clone_from(&self.qpos);
+        state.qvel.clone_from(&self.qvel);
+        state.act.clone_from(&self.act);
+        state.qacc_warmstart.clone_from(&self.qacc_warmstart);
+        // a scene that diverged diverges again, which the first call reported
+        let _ = engines.lend(|engine| match self.call {
+            EngineCall::Step => engine.step(state),
+            EngineCall::None | EngineCall::Forward => engine.forward(state),
+        });
+    }
+}
+
+/// The work for which an environment of a vector gets a scratch state.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum ScratchUse {
+    /// A step, which goes on from the state.
+    Step,
+    /// A reset, which overwrites it.
+    Reset,
+}
+
 /// The state of a scene and the engines that advance it.
-pub(super) struct Physics {
+pub(in crate::env) struct Physics {
     /// The engines that all environments of the blueprint share.
     engines: Arc<Engines>,
     /// An engine of its own, on a program's request.
     own: Option<Box<dyn Engine>>,
-    state: EnvState,
+    /// The state: all of it in [`StateStorage::Whole`], what decides how the run goes on in [`StateStorage::Split`], nothing in
+    /// [`StateStorage::Working`].
+    kept: Box<State>,
+    storage: StateStorage,
+    /// Whether episodes begin in [`StateStorage::Split`].
+    shares: bool,
+    last_call: LastEngineCall,
     /// Parameters after a reset: the blueprint's, with what locks and unlocks changed.
     pub base: Shared<Params>,
+}
+
+/// Where the parts of a state are.
+enum StateStorage {
+    /// The environment keeps all of it.
+    Whole,
+    /// The environment keeps what decides how the run goes on. A program that reads the rest finds it here, computed again.
+    Split(OnceLock<Box<State>>),
+    /// A step or reset works in this scratch state.
+    Working(Box<State>),
 }
 
 impl std::fmt::Debug for Physics {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.debug_struct("Physics")
-            .field("state", &self.state)
+            .field("state", self.dynamic())
             .finish_non_exhaustive()
     }
 }
 
-/// A copy shares the engines, whose memory changes no later step.
+/// A copy has a whole state. It shares the engines, whose memory changes no later step.
 impl Clone for Physics {
     fn clone(&self) -> Self {
+        let kept = match &self.storage {
+            // computed for the copy alone, as the original may never be read
+            StateStorage::Split(read) if read.get().is_none() => self.computed_again(),
+            _ => self.state().clone().into(),
+        };
         Self {
             engines: self.engines.clone(),
             own: None,
-            state: self.state.copy(&self.engines),
+            kept,
+            storage: StateStorage::Whole,
+            shares: false,
+            last_call: LastEngineCall::default(),
             base: self.base.clone(),
         }
     }
 }
 
 impl Physics {
-    pub fn new(blueprint: &Blueprint) -> Self {
-        let engines = blueprint.engines().clone();
-        let mut state = engines.reader().new_state();
-        blueprint.actuation().prepare(blueprint.model(), &mut state);
-        // shared from the start, because copies into an own allocation would stay unshared
-        state.params = blueprint.params().clone();
+    /// Begins with a state, whose parameters are those after a reset.
+    pub fn new(engines: Arc<Engines>, state: State) -> Self {
         Self {
             engines,
             own: None,
-            state: EnvState::new(state),
-            base: blueprint.params().clone(),
+            base: state.params.clone(),
+            kept: state.into(),
+            storage: StateStorage::Whole,
+            shares: false,
+            last_call: LastEngineCall::default(),
         }
     }
 
     /// Returns the state.
     pub fn state(&self) -> &State {
-        self.state.get(&self.engines)
+        match &self.storage {
+            StateStorage::Whole => &self.kept,
+            StateStorage::Split(read) => read.get_or_init(|| self.computed_again()),
+            StateStorage::Working(scratch) => scratch,
+        }
+    }
+
+    /// Returns the state, of which only what decides how the run goes on may be there.
+    pub fn dynamic(&self) -> &State {
+        match &self.storage {
+            StateStorage::Whole | StateStorage::Split(_) => &self.kept,
+            StateStorage::Working(scratch) => scratch,
+        }
     }
 
     /// Returns the state, to change it.
     pub fn state_mut(&mut self) -> &mut State {
-        self.state.parts(&self.engines).0
+        self.parts().1
     }
 
-    /// Returns the state, which may hold only what decides how the run continues.
-    pub fn dynamic(&self) -> &State {
-        self.state.dynamic()
-    }
-
-    /// Lets steps and resets work in scratch states from now on: see [`EnvState::share`].
-    pub fn share(&mut self) {
-        self.state.share();
-    }
-
-    /// Returns whether they do.
-    pub fn shares(&self) -> bool {
-        self.state.shares()
-    }
-
-    /// Takes a scratch state for a step or reset, if the environment shares: see [`EnvState::begin`].
-    pub fn begin(&mut self, work: ScratchUse) {
-        self.state.begin(work, &self.engines);
-    }
-
-    /// Gives it back.
-    pub fn end(&mut self) {
-        self.state.end(&self.engines);
-    }
-
-    /// Returns what a reader would get with other bits after the present step or reset: see [`EnvState::unshareable`].
-    pub fn unshareable(&self) -> Option<&'static str> {
-        self.state.unshareable(&self.engines)
-    }
-
-    /// Returns where steps get their engine from, the state that it advances, where its calls are noted, and the parameters of a reset.
+    /// Returns where steps get their engine from, the state that it advances, where its calls are noted, if they are, and the parameters
+    /// of a reset. Between steps the environment then keeps all of the state until its next episode, as a program may change anything.
     pub fn parts(
         &mut self,
     ) -> (
@@ -104,12 +184,81 @@ impl Physics {
         Option<&mut LastEngineCall>,
         &mut Shared<Params>,
     ) {
-        let (state, last_call) = self.state.parts(&self.engines);
+        self.keep_all();
         let source = match &mut self.own {
             Some(own) => EngineSource::Own(&mut **own),
             None => EngineSource::Shared(&self.engines),
         };
-        (source, state, last_call, &mut self.base)
+        match &mut self.storage {
+            StateStorage::Working(scratch) => (source, scratch, Some(&mut self.last_call), &mut self.base),
+            StateStorage::Whole | StateStorage::Split(_) => (source, &mut self.kept, None, &mut self.base),
+        }
+    }
+
+    /// Goes from [`StateStorage::Split`] to [`StateStorage::Whole`].
+    fn keep_all(&mut self) {
+        if let StateStorage::Split(read) = &mut self.storage {
+            let read = read.take();
+            self.kept = read.unwrap_or_else(|| self.computed_again());
+            self.storage = StateStorage::Whole;
+        }
+    }
+
+    /// Lets steps and resets work in scratch states from now on. What is computed is dropped.
+    pub fn share(&mut self) {
+        self.kept.drop_computed();
+        self.storage = StateStorage::Split(OnceLock::new());
+        self.shares = true;
+    }
+
+    /// Returns whether steps and resets may work in scratch states.
+    pub fn shares(&self) -> bool {
+        self.shares
+    }
+
+    /// Takes a scratch state for a step or reset that begins with a call of an engine, if the environment shares. The computed part of the
+    /// scratch state is unspecified.
+    pub fn begin(&mut self, work: ScratchUse) {
+        match (&self.storage, work) {
+            (StateStorage::Split(read), ScratchUse::Step) if read.get().is_some() => self.keep_all(),
+            (StateStorage::Split(_) | StateStorage::Whole, ScratchUse::Reset) if self.shares => self.share(),
+            _ => {}
+        }
+        if let StateStorage::Split(_) = self.storage {
+            let mut scratch = self.engines.take_state();
+            scratch.swap_dynamic(&mut self.kept);
+            self.storage = StateStorage::Working(scratch);
+        }
+    }
+
+    /// Gives the scratch state back, if there is one.
+    pub fn end(&mut self) {
+        if let StateStorage::Working(scratch) = &mut self.storage {
+            scratch.swap_dynamic(&mut self.kept);
+            if let StateStorage::Working(scratch) =
+                std::mem::replace(&mut self.storage, StateStorage::Split(OnceLock::new()))
+            {
+                self.engines.put_state(scratch);
+            }
+        }
+    }
+
+    fn computed_again(&self) -> Box<State> {
+        let dynamic = self.dynamic();
+        let mut state = self.engines.reader().new_state();
+        state.copy_dynamic_from(dynamic);
+        self.last_call.repeat(&self.engines, &mut state);
+        state.copy_dynamic_from(dynamic);
+        state.into()
+    }
+
+    /// Returns the name of a computed quantity of the scratch state that a reader would get with other bits after the work, if there is one.
+    /// It computes all of them once more.
+    pub fn unshareable(&self) -> Option<&'static str> {
+        match &self.storage {
+            StateStorage::Working(scratch) => difference(scratch, &self.computed_again()),
+            StateStorage::Whole | StateStorage::Split(_) => None,
+        }
     }
 
     /// Returns an engine that answers questions about the model.
@@ -119,14 +268,14 @@ impl Physics {
 
     /// Returns an engine of its own, with which the environment steps from now on.
     pub fn own_engine(&mut self) -> &mut dyn Engine {
-        self.state.parts(&self.engines);
+        self.keep_all();
         &mut **self.own.get_or_insert_with(|| self.engines.make())
     }
 
     /// Switches to the engines of another model of the same sizes.
     pub fn use_engines(&mut self, engines: &Arc<Engines>) {
         // what those of the other model computed, these would compute differently
-        self.state.parts(&self.engines);
+        self.keep_all();
         self.engines = engines.clone();
         if let Some(own) = &mut self.own {
             *own = self.engines.make();
@@ -164,10 +313,26 @@ impl Physics {
     }
 
     fn keep_locks(&mut self, model: &Model, report: &LockReport) {
-        let now = &self.state.dynamic().params;
+        let now = self.dynamic().params.clone();
         for e in report.changed.iter().filter_map(|&j| lock_of(model, j)) {
             self.base.eq_active[e] = now.eq_active[e];
             self.base.eq_offset[e] = now.eq_offset[e];
         }
     }
+}
+
+/// Returns the first quantity that differs between two states.
+fn difference(left: &State, right: &State) -> Option<&'static str> {
+    macro_rules! compare {
+        ($($field:ident)*) => {
+            $(if left.$field != right.$field {
+                return Some(stringify!($field));
+            })*
+        };
+    }
+    compare!(xpos xmat xipos ximat geom_xpos geom_xmat site_xpos site_xmat cam_xpos cam_xmat subtree_com xanchor xaxis cinert);
+    compare!(ten_length actuator_length cvel ten_velocity actuator_velocity qfrc_bias qfrc_passive qfrc_gravcomp);
+    compare!(act_dot actuator_force qfrc_actuator qfrc_smooth qacc_smooth contact qfrc_constraint qacc);
+    compare!(cacc cfrc_ext cfrc_int sensordata);
+    None
 }

@@ -117,7 +117,7 @@ impl<'a> ManualControl<'a> {
     /// # Errors
     /// As [`ManualControl::forward`] and [`ManualControl::observe`].
     pub fn show(&mut self, qpos: &[f64], qvel: &[f64]) -> Result<(), EnvError> {
-        self.env.senses.prepare();
+        self.env.senses.begin_step();
         self.forward(qpos, qvel)?;
         self.observe()?;
         self.env.finish_step();

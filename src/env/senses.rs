@@ -56,6 +56,8 @@ pub struct Senses {
     /// Whether pictures are drawn on request.
     pub(super) vision_lazy: bool,
     pub(super) picture: PictureStatus,
+    /// Whether the next step is likely to draw the eyes. It decides when a thread wakes and no bit.
+    draws_next: bool,
     /// Number of times the eyes were drawn.
     pub(super) drawn: u64,
     /// Number of observations.
@@ -108,6 +110,7 @@ impl Senses {
             vision_deferred: false,
             vision_lazy: config.vision_lazy,
             picture: PictureStatus::Drawn,
+            draws_next: false,
             drawn: 0,
             moment: 0,
             known: true,
@@ -284,6 +287,7 @@ impl Senses {
         }
         self.moment += 1;
         let lazy = self.is_lazy();
+        self.draws_next = !lazy && self.clocks[0].as_ref().is_none_or(Clock::will_be_due);
         self.picture = if lazy {
             PictureStatus::Waiting
         } else {
@@ -324,11 +328,19 @@ impl Senses {
         }
     }
 
-    /// Wakes the thread that draws the second eye, because both are drawn next.
-    pub(super) fn prepare(&self) {
-        let look = !self.is_lazy() && self.clocks[0].as_ref().is_none_or(Clock::will_be_due);
-        if let (Some(vision), true) = (&self.vision, look) {
+    /// Begins a step, with which a picture that was not requested is lost. If both eyes are drawn next, it wakes the thread that draws the
+    /// second one.
+    pub(super) fn begin_step(&mut self) {
+        self.forget_picture();
+        if let (Some(vision), true) = (&self.vision, self.draws_next) {
             vision.renderer().prepare();
+        }
+    }
+
+    /// Drops a picture that was not requested, because the scene that it would show moves on.
+    pub(super) fn forget_picture(&mut self) {
+        if self.picture == PictureStatus::Waiting {
+            self.picture = PictureStatus::Gone;
         }
     }
 

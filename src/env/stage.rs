@@ -2,10 +2,9 @@
 
 use std::sync::Arc;
 
-use crate::env::Env;
 use crate::physics::Stage;
 
-/// A part of the work of [`Env::step`].
+/// A part of the work of [`Env::step`](crate::Env::step).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum EnvStage {
     /// From the action to controls and torques.
@@ -38,13 +37,3 @@ impl EnvStage {
 /// A function that is called when a stage starts, and with `None` when a step is done. It is for timing, because the library has no
 /// clock.
 pub type EnvProbe = Arc<dyn Fn(Option<EnvStage>) + Send + Sync>;
-
-impl Env {
-    /// Calls the probe, if there is one, when a stage starts, or with `None` when the step is done.
-    #[inline]
-    pub(super) fn mark(&self, stage: Option<EnvStage>) {
-        if let Some(probe) = &self.probe {
-            probe(stage);
-        }
-    }
-}

@@ -2,7 +2,7 @@
 
 use std::ops::{Deref, DerefMut};
 
-use crate::env::env_state::ScratchUse;
+use crate::env::physics::ScratchUse;
 use crate::env::{Env, EnvError};
 
 /// Whether steps and resets check [`Task::only_moves`](crate::env::Task::only_moves).

@@ -23,7 +23,7 @@ use std::fmt::Debug;
 
 pub use goal::{Goal, GoalError, Outcome};
 pub(super) use goal::{Goals, rewards};
-pub(in crate::env) use scene::ActionTiming;
+pub(in crate::env) use scene::{ActionTiming, StagedTask};
 pub use scene::{TaskScene, TaskView};
 
 use crate::config::{Behavior, Config};

@@ -4,9 +4,10 @@ use crate::actuation::Actuation;
 use crate::config::{Compat, Config};
 use crate::env::action_delay::ActionDelay;
 use crate::env::engines::EngineSource;
-use crate::env::env_state::{EngineCall, LastEngineCall};
 use crate::env::paths::Paths;
-use crate::env::{EnvError, check_vector};
+use crate::env::physics::{EngineCall, LastEngineCall};
+use crate::env::task::Goals;
+use crate::env::{Env, EnvError, Task, check_vector};
 use crate::mimo::{LockTarget, held_posture, lock};
 use crate::model::Model;
 use crate::physics::{Engine, Params, Shared, State};
@@ -74,6 +75,41 @@ pub struct TaskView<'a> {
 impl std::fmt::Debug for TaskView<'_> {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.write_str("TaskView")
+    }
+}
+
+/// The scene of an environment together with its task.
+pub(in crate::env) struct StagedTask<'a> {
+    pub scene: TaskScene<'a>,
+    pub task: &'a mut dyn Task,
+    pub goals: &'a mut Goals,
+    pub applied: &'a mut Vec<f32>,
+}
+
+impl Env {
+    /// Returns the scene together with its task.
+    pub(in crate::env) fn play(&mut self) -> StagedTask<'_> {
+        let (engine, state, last_call, base) = self.physics.parts();
+        let scene = TaskScene {
+            config: self.blueprint.config(),
+            model: self.blueprint.model(),
+            state,
+            rng: &mut self.rng,
+            engine,
+            last_call,
+            base,
+            actuation: self.blueprint.actuation(),
+            paths: self.blueprint.paths(),
+            delay: Some(&mut self.action_delay),
+            start: [self.blueprint.init_qpos(), self.blueprint.init_qvel()],
+            action: &mut self.action,
+        };
+        StagedTask {
+            scene,
+            task: &mut *self.task,
+            goals: &mut self.goals,
+            applied: &mut self.applied,
+        }
     }
 }
 
