@@ -41,7 +41,7 @@ features() {
   local features
   check -p babybench --no-default-features --lib --examples
   check -p babybench -p learner --all-features --lib --bins --examples
-  for features in rapier,npz,parallel,wgpu report,onnx; do
+  for features in rapier,npz,parallel,wgpu onnx; do
     check -p babybench --no-default-features --features "babybench/${features//,/,babybench/}" --lib
   done
   check -p mjcf-sim --lib

@@ -24,9 +24,9 @@ export PYO3_NO_PYTHON=1
 wrong=0
 for for in "$@"; do
   packages=(-p babybench -p babybench-cli -p babybench-python) what='library, command line, Python package'
-  features=(--features 'babybench/parallel babybench/npz babybench/report babybench/onnx babybench-cli/onnx')
+  features=(--features 'babybench/parallel babybench/npz babybench/onnx babybench-cli/onnx')
   if [[ " ${mobile[*]} " == *" $for "* ]]; then
-    packages=(-p babybench) what='library' features=(--features 'parallel npz report onnx')
+    packages=(-p babybench) what='library' features=(--features 'parallel npz onnx')
   fi
   [ "${GPU:-}" != yes ] || features=(--all-features)
   started=$SECONDS result='compiles'

@@ -74,7 +74,6 @@
 //! | `rapier` | an engine that solves with [Rapier](https://rapier.rs)'s own pipeline; ray casts and shape queries |
 //! | `parallel` | threads in vectors of environments, and for the second eye |
 //! | `npz` | NumPy archives, for recordings and replays |
-//! | `report` | [`report`]: a page about a run |
 //! | `onnx` | policies that are ONNX models, run in pure Rust |
 //! | `wgpu` | images on a GPU: `renderer: wgpu`, [`env::draw_eyes`] |
 //!
@@ -116,8 +115,6 @@ mod json;
 pub mod mimo;
 #[cfg(feature = "eval")]
 pub mod policy;
-#[cfg(feature = "report")]
-pub mod report;
 #[cfg(feature = "eval")]
 pub mod runs;
 pub mod sensors;
@@ -129,8 +126,8 @@ pub mod vector;
 pub use mjcf_sim::formats;
 #[cfg(feature = "rapier")]
 pub use mjcf_sim::rapier;
-pub use mjcf_sim::{Limits, Model, assets, files, math, mjcf_loader, model, physics, render};
-use mjcf_sim::{limits, pool, text, threads};
+pub use mjcf_sim::{Limits, Model, assets, files, math, mjcf_loader, model, physics, render, text};
+use mjcf_sim::{limits, pool, threads};
 
 pub use config::table::Config;
 pub use env::error::EnvError;

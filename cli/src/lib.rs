@@ -7,6 +7,7 @@ mod commands;
 mod hint;
 mod interrupt;
 mod print;
+pub mod report;
 pub mod view;
 
 use std::ffi::OsString;

@@ -10,8 +10,8 @@ use std::sync::LazyLock;
 
 use babybench::config::Compat;
 use babybench::eval::Score;
-use babybench::report::Report;
 use babybench::runs::logs::{evaluation_path, read_training, training_path};
+use babybench_cli::report::Report;
 use libfuzzer_sys::fuzz_target;
 
 static FOLDER: LazyLock<PathBuf> = LazyLock::new(|| {

@@ -100,8 +100,8 @@ impl Benchmark {
     /// Runs a plan into a folder, `jobs` runs at a time. Finished runs in the folder are not repeated. `progress` is called after every
     /// step and can stop the benchmark.
     ///
-    /// The folder gets `runs/NAME.json` and `records/NAME` for each run, then `benchmark.json`, `benchmark.md` and, by
-    /// [`benchmark_page`](crate::report::benchmark_page), a page.
+    /// The folder gets `runs/NAME.json` and `records/NAME` for each run, then `benchmark.json` and `benchmark.md`. The command line adds a
+    /// page.
     ///
     /// # Errors
     /// The first that occurs: an invalid configuration, or an error of an environment, a policy or the file system.

@@ -153,8 +153,7 @@ impl Score {
     }
 
     /// Returns the score of a number of touched parts, of both hands together.
-    #[cfg(feature = "report")]
-    pub(crate) fn of_parts(touched: usize) -> f64 {
+    pub fn of_parts(touched: usize) -> f64 {
         touched as f64 / (2 * PARTS) as f64
     }
 

@@ -74,8 +74,8 @@ impl BodyFigures {
     }
 }
 
-/// Returns the lowest and the highest point of MIMo along the axis from his hip to his chest, m.
-pub(crate) fn upright_extent(model: &Model, state: &State, hip: usize) -> [f64; 2] {
+/// Returns the lowest and the highest point of MIMo along the axis from his hip (the body `hip`) to his chest, m.
+pub fn upright_extent(model: &Model, state: &State, hip: usize) -> [f64; 2] {
     let up = column(&state.xmat[hip], 2);
     let own = |g: &usize| model.in_subtree(model.geom_bodyid[*g], hip);
     let geoms = (0..model.ngeom()).filter(own).map(|g| {

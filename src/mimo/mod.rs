@@ -27,15 +27,13 @@ pub use document::{DOCUMENT, scene_xml};
 #[cfg(feature = "eval")]
 pub(crate) use document::{document_path, has_own_scene};
 pub use error::SceneError;
-pub use figures::BodyFigures;
-#[cfg(feature = "report")]
-pub(crate) use figures::upright_extent;
+pub use figures::{BodyFigures, upright_extent};
 pub use growth::Growth;
 pub use growth::{GrowthError, StrengthRow};
 pub use locks::{LockError, LockReport, LockTarget};
 pub use locks::{held_by, lock, lock_of, unlock};
-pub(crate) use parts::{JOINT_PREFIX, ROOT};
-pub use parts::{MimoBodies, MimoJoints, joint_part};
+pub(crate) use parts::ROOT;
+pub use parts::{JOINT_PREFIX, MimoBodies, MimoJoints, joint_part};
 pub use placement::held_posture;
 pub use scene::{build_model, build_scene, strength_table};
 pub use sources::{Mark, SourcedConstant};

@@ -6,7 +6,7 @@ use crate::mimo::version::SECOND_PREFIX;
 use crate::model::{JointType, Model, ObjType};
 
 /// Prefix of the names of MIMo's own joints.
-pub(crate) const JOINT_PREFIX: &str = "robot:";
+pub const JOINT_PREFIX: &str = "robot:";
 
 /// The body on which all others of MIMo hang.
 pub(crate) const ROOT: &str = "hip";

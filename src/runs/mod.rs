@@ -66,10 +66,9 @@ pub use record::{ArrayDescription, EpisodeDescription, GeomDescription, JointDes
 pub use record::{Record, RecordError, RecordOptions, Recorder, RepeatResult, VectorRecorder};
 #[cfg(feature = "npz")]
 pub use replay::{EpisodeStart, Recording, Replay, ReplayError, TaskRows, TouchRows, replay, replay_with_images};
-#[cfg(feature = "report")]
-pub(crate) use scene_file::scene_config;
 pub use scene_file::{
-    SceneFile, SceneFileStatus, complete_scene, complete_scene_from, keep_scene, scene_compat, write_scene_from,
+    SceneFile, SceneFileStatus, complete_scene, complete_scene_from, keep_scene, scene_compat, scene_config,
+    write_scene_from,
 };
 pub use scene_file::{SceneFileError, write_scene};
 pub use scene_file::{read_config, read_scene};

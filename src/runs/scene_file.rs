@@ -218,7 +218,7 @@ pub fn read_config(xml: &str) -> Result<Config, SceneFileError> {
 }
 
 /// Reads the configuration in the `scene.xml` of a run, if possible.
-pub(crate) fn scene_config(save_dir: &Path) -> Option<Config> {
+pub fn scene_config(save_dir: &Path) -> Option<Config> {
     let bytes = files::read(&save_dir.join(SCENE), Limits::DEFAULT.document_bytes as u64).ok()?;
     read_config(std::str::from_utf8(&bytes).ok()?).ok()
 }

@@ -37,8 +37,6 @@ mod record;
 #[cfg(all(feature = "eval", feature = "npz"))]
 mod regards;
 mod render;
-#[cfg(feature = "report")]
-mod report;
 #[cfg(feature = "eval")]
 mod resume;
 mod rooms;

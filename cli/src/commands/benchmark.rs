@@ -5,9 +5,9 @@ use std::ops::ControlFlow;
 use std::path::PathBuf;
 use std::time::Duration;
 
+use crate::report::benchmark_page;
 use babybench::eval::{Benchmark, BenchmarkError, BenchmarkPlan};
 use babybench::policy::DEFAULT_LIMIT;
-use babybench::report::benchmark_page;
 use clap::Args;
 
 use super::progress_bar;

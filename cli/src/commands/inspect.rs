@@ -4,13 +4,13 @@ use std::error::Error;
 use std::io::{self, Write, stdout};
 use std::path::{Path, PathBuf};
 
+use crate::report::skin::draw_skin;
 use babybench::config::{Compat, Delays};
 use babybench::formats::png::write_png;
 use babybench::mimo::{joint_part, strength_table};
 use babybench::mjcf_loader::elements;
 use babybench::model::{EqualityKind, TrnType};
 use babybench::physics::collision::PairTable;
-use babybench::report::skin::draw_skin;
 use babybench::runs::replay;
 use babybench::sensors::ProprioceptionComponent;
 use babybench::{Blueprint, Env, Model};

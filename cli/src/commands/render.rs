@@ -3,12 +3,12 @@
 use std::error::Error;
 use std::path::{Path, PathBuf};
 
+use crate::report::ages::draw_ages;
 use babybench::config::{Compat, RendererKind};
 use babybench::env::{ViewFrom, Viewer};
 use babybench::formats::npz::Npz;
 use babybench::formats::png::write_png;
 use babybench::mimo::{build_model, scene_assets};
-use babybench::report::ages::draw_ages;
 use babybench::{Config, Env, Model};
 use clap::Args;
 

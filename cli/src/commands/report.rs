@@ -3,7 +3,7 @@
 use std::error::Error;
 use std::path::PathBuf;
 
-use babybench::report::Report;
+use crate::report::Report;
 use clap::Args;
 
 use crate::print::{note, say};

@@ -67,7 +67,7 @@ impl Train {
         let mut policy = self.policy()?;
         let mut env = start_training(&blueprint, self.resume)?;
         let (seed, done, bar) = self.begin(env.log(), config)?;
-        env.by_hand().seed_action_space(seed);
+        env.seed_action_space(seed);
         let (mut steps, mut over, mut saved) = (done, true, Instant::now());
         let (mut action, mut episode) = (Vec::new(), 0);
         while steps < self.train_for && !interrupt.wanted() {

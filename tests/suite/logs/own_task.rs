@@ -49,11 +49,6 @@ fn a_task_of_ones_own_is_known_by_its_name() {
     episode(&mut env, 2);
     env.finish_training().expect("the log can be written");
     assert_eq!(names(), ["wait"; 4]);
-    #[cfg(feature = "report")]
-    {
-        let page = babybench::report::Report::new(folder.path()).expect("a report").html;
-        assert!(page.contains("<title>Task wait"), "the title");
-    }
 }
 
 #[test]

@@ -1,15 +1,20 @@
 //! The page about a run: what is on it, for whole and for partial runs.
 
+#[path = "../../tests/common/mod.rs"]
+mod common;
+
 use std::ops::ControlFlow;
 use std::path::Path;
 
-use crate::common::*;
+use babybench::Blueprint;
 use babybench::config::{Behavior, Config, Scene};
+use babybench::env::{BlueprintOptions, Task};
 use babybench::eval::{Plan, run_episodes};
 use babybench::policy::PolicySource;
-use babybench::report::{Report, ReportError};
 use babybench::runs::logs::training_path;
 use babybench::runs::start_training;
+use babybench_cli::report::{Report, ReportError};
+use common::*;
 
 const BEHAVIORS: [Behavior; 2] = [Behavior::SelfTouch, Behavior::HandRegard];
 
@@ -261,4 +266,30 @@ fn another_training_can_stand_beside_the_learning_curve() {
     };
     assert!(refused(&other).contains("its behavior is hand_regard"));
     assert!(refused(&Folder::new("empty")).contains("a baseline is the save_dir of a training"));
+}
+
+/// A task of a program's own that does nothing.
+#[derive(Clone, Debug)]
+struct Wait;
+
+impl Task for Wait {
+    fn name(&self) -> &str {
+        "wait"
+    }
+}
+
+#[test]
+fn a_page_is_named_after_a_task_of_ones_own() {
+    let folder = Folder::new("report_own_task");
+    let config = Config {
+        save_dir: folder.text(),
+        max_episode_steps: 3,
+        ..free(Behavior::None, Scene::Base)
+    };
+    let blueprint = Blueprint::with(config, BlueprintOptions::default().with_task(Wait)).expect("embedded assets");
+    let mut env = start_training(&blueprint, false).expect("a folder");
+    env.reset(None).expect("no divergence");
+    held_steps(env.env_mut(), 3, 3);
+    env.finish_training().expect("a log");
+    assert!(report(&folder).html.contains("<title>Task wait"), "the title");
 }

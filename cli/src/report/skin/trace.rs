@@ -1,7 +1,7 @@
 //! Intersections of rays and geoms, for the picture of the skin.
 
-use crate::math::*;
-use crate::model::GeomType;
+use babybench::math::*;
+use babybench::model::GeomType;
 
 /// Casts the ray from `o` in direction `d` (unit); returns the distance to the geom, m, and the outward unit normal
 /// there, all in the geom's frame. The ray must start outside. Planes are not met.
@@ -83,8 +83,8 @@ fn lids(r: f64, half: f64, o: Vec3, d: Vec3) -> Hit {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::sensors::touch::points::surface_points;
-    use crate::spaces::NumpyRng;
+    use babybench::sensors::touch::points::surface_points;
+    use babybench::spaces::NumpyRng;
 
     #[test]
     fn rays_at_sensor_points_end_there_or_before() {

@@ -3,12 +3,12 @@
 use maud::{Markup, html};
 
 use super::{grouped, percent, step_time};
-use crate::config::{Behavior, Compat};
-use crate::env::{BehaviorInfo, EYE_HAND_PAIRS, Info, Outcome, PartNames};
-use crate::eval::Score;
 use crate::report::run::{EvaluationEpisode, RunContents};
 use crate::report::strip::{frames, moments};
 use crate::report::svg::embed;
+use babybench::config::{Behavior, Compat};
+use babybench::env::{BehaviorInfo, EYE_HAND_PAIRS, Info, Outcome, PartNames};
+use babybench::eval::Score;
 
 /// The counters of a single evaluation episode. Under `compat: reference` counters and lists continue from episode to episode.
 #[derive(Default)]

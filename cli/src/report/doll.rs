@@ -1,12 +1,12 @@
 //! Pictures of MIMo with parts of the body in colour.
 
-use crate::assets::AssetSource;
-use crate::formats::png::{ColorType, png};
-use crate::math::*;
-use crate::mimo::{JOINT_PREFIX, upright_extent};
-use crate::model::Model;
-use crate::physics::{State, Topology, cameras, com_pos, kinematics};
-use crate::render::{CpuRenderer, Element, LightAim, LightSource, Poses, Scenery, View};
+use babybench::assets::AssetSource;
+use babybench::formats::png::{ColorType, png};
+use babybench::math::*;
+use babybench::mimo::{JOINT_PREFIX, upright_extent};
+use babybench::model::Model;
+use babybench::physics::{State, Topology, cameras, com_pos, kinematics};
+use babybench::render::{CpuRenderer, Element, LightAim, LightSource, Poses, Scenery, View};
 
 /// Width of a picture, pixels.
 pub(super) const WIDTH: usize = 400;

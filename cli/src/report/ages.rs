@@ -3,11 +3,11 @@
 use maud::html;
 
 use super::svg::embed;
-use crate::assets::AssetSource;
-use crate::formats::png::{ColorType, png};
-use crate::mimo::BodyFigures;
-use crate::model::Model;
 use crate::report::doll::{Doll, DollSide};
+use babybench::assets::AssetSource;
+use babybench::formats::png::{ColorType, png};
+use babybench::mimo::BodyFigures;
+use babybench::model::Model;
 
 /// Pixels for each metre.
 const SCALE: f64 = 640.0;

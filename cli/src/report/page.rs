@@ -11,11 +11,11 @@ use super::curve::curve;
 use super::gaze::Gaze;
 use super::run::RunContents;
 use super::svg::download;
-use crate::config::{Behavior, Compat, Config, Scene};
-use crate::env::{EYE_HAND_PAIRS, Info, Outcome, TaskInfo};
-use crate::eval::{Score, ScoreParts};
-use crate::mimo::Version;
-use crate::text::quoted;
+use babybench::config::{Behavior, Compat, Config, Scene};
+use babybench::env::{EYE_HAND_PAIRS, Info, Outcome, TaskInfo};
+use babybench::eval::{Score, ScoreParts};
+use babybench::mimo::Version;
+use babybench::text::quoted;
 
 const STYLE: &str = include_str!("style.css");
 /// The hands: name, class, colour.

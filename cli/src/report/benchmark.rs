@@ -3,8 +3,8 @@
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 use super::svg::download;
-use crate::eval::{Benchmark, BenchmarkRow, ConfidenceInterval};
-use crate::text::quoted;
+use babybench::eval::{Benchmark, BenchmarkRow, ConfidenceInterval};
+use babybench::text::quoted;
 
 const STYLE: &str = include_str!("style.css");
 /// Width and height of a chart row, pixels, and the width for names on its left.

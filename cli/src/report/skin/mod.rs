@@ -2,10 +2,10 @@
 
 mod trace;
 
-use crate::math::*;
-use crate::model::{GeomType, Model};
-use crate::render::MAX_SIZE;
-use crate::sensors::touch::{SkinLayout, Touch};
+use babybench::math::*;
+use babybench::model::{GeomType, Model};
+use babybench::render::MAX_SIZE;
+use babybench::sensors::touch::{SkinLayout, Touch};
 use trace::trace;
 
 /// Colour of the background.

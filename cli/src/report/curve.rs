@@ -6,8 +6,8 @@ use maud::{Markup, html};
 
 use super::run::Baseline;
 use super::svg::download;
-use crate::env::Info;
-use crate::eval::Score;
+use babybench::env::Info;
+use babybench::eval::Score;
 
 /// Size of the drawing and its margins: left, top, right, bottom.
 const SIZE: [f64; 2] = [640.0, 260.0];

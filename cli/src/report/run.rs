@@ -4,13 +4,13 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use super::ReportError;
-use crate::config::{Behavior, Compat, Config, Scene};
-use crate::env::Info;
-use crate::eval::{Score, TouchableGeoms};
-use crate::mimo::{build_model, embedded};
-use crate::model::Model;
-use crate::runs::logs::{EvaluationLog, evaluation_path, read_training, training_path};
-use crate::runs::{read_scene, scene_config};
+use babybench::config::{Behavior, Compat, Config, Scene};
+use babybench::env::Info;
+use babybench::eval::{Score, TouchableGeoms};
+use babybench::mimo::{build_model, embedded};
+use babybench::model::Model;
+use babybench::runs::logs::{EvaluationLog, evaluation_path, read_training, training_path};
+use babybench::runs::{read_scene, scene_config};
 
 /// Maximum number of evaluation episodes that are read.
 const MAX_EVALUATIONS: usize = 100;

@@ -3,9 +3,9 @@
 use std::io::{self, Read, Seek, SeekFrom};
 use std::path::Path;
 
-use crate::env::{BehaviorInfo, EYE_HAND_PAIRS, Info, PartNames};
-use crate::files;
-use crate::runs::logs::EvaluationLog;
+use babybench::env::{BehaviorInfo, EYE_HAND_PAIRS, Info, PartNames};
+use babybench::files;
+use babybench::runs::logs::EvaluationLog;
 
 /// Frames in the page.
 const FRAMES: usize = 8;
@@ -170,7 +170,7 @@ mod tests {
     fn touch(right: &[usize], left: &[usize]) -> Info {
         Info {
             behavior: BehaviorInfo::SelfTouch {
-                touches: crate::env::PerHand {
+                touches: babybench::env::PerHand {
                     right_hand: right.to_vec(),
                     left_hand: left.to_vec(),
                 },
@@ -228,8 +228,9 @@ mod tests {
         let folder = std::env::temp_dir().join(format!("babybench_strip_{}", std::process::id()));
         std::fs::create_dir_all(&folder).expect("a folder");
         let path = folder.join("a.avi");
-        let mut avi = crate::formats::avi::AviWriter::new(std::fs::File::create(&path).expect("a file"), 16, 16, 60)
-            .expect("a video");
+        let mut avi =
+            babybench::formats::avi::AviWriter::new(std::fs::File::create(&path).expect("a file"), 16, 16, 60)
+                .expect("a video");
         for k in 0..6_u8 {
             avi.frame(&[40 * k; 3 * 256]).expect("a frame");
         }

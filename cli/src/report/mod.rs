@@ -2,7 +2,6 @@
 //! touched or the eyes saw, and key frames of the video.
 
 pub mod ages;
-#[cfg(feature = "npz")]
 mod benchmark;
 mod curve;
 mod doll;
@@ -18,10 +17,9 @@ use std::path::{Path, PathBuf};
 
 use thiserror::Error;
 
-#[cfg(feature = "npz")]
 pub use benchmark::benchmark_page;
 
-use crate::files::replace_file;
+use babybench::files::replace_file;
 use run::RunContents;
 
 /// An error in building a report.

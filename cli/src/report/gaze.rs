@@ -5,10 +5,10 @@ use std::f64::consts::FRAC_1_SQRT_2;
 use maud::{Markup, html};
 
 use super::run::EvaluationEpisode;
-use crate::config::{Compat, Config};
-use crate::math::*;
-use crate::model::Model;
-use crate::physics::{State, Topology, cameras, com_pos, kinematics};
+use babybench::config::{Compat, Config};
+use babybench::math::*;
+use babybench::model::Model;
+use babybench::physics::{State, Topology, cameras, com_pos, kinematics};
 
 /// Side of a cell of the map, degrees.
 const CELL: f64 = 3.0;
@@ -163,9 +163,9 @@ impl Gaze {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::config::{Behavior, Config, Scene};
-    use crate::env::{Blueprint, EYE_HAND_PAIRS};
-    use crate::runs::logs::EvaluationLog;
+    use babybench::config::{Behavior, Config, Scene};
+    use babybench::env::{Blueprint, EYE_HAND_PAIRS};
+    use babybench::runs::logs::EvaluationLog;
 
     #[test]
     fn directions_are_angles_from_the_axis() {

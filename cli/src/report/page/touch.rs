@@ -3,13 +3,13 @@
 use maud::{Markup, html};
 
 use super::{HANDS, percent};
-use crate::assets::{DirAssets, Overlay};
-use crate::eval::TouchableGeoms;
-use crate::mimo::embedded;
-use crate::model::Model;
 use crate::report::doll::{self, Doll, DollSide};
 use crate::report::run::RunContents;
 use crate::report::svg::embed;
+use babybench::assets::{DirAssets, Overlay};
+use babybench::eval::TouchableGeoms;
+use babybench::mimo::embedded;
+use babybench::model::Model;
 
 /// Parts that the hand touches least are this far between no colour and the full one.
 const FAINT: f32 = 0.3;
