@@ -133,6 +133,7 @@ impl Config {
 
     /// Returns the first value that `compat` excludes.
     fn unlike_reference(&self) -> Option<Conflict> {
+        // keys that shape touch exclude nothing while it is off: files of the kit keep them
         let touch = self.touch_enabled();
         let function = self.touch_function;
         let (key, value, reason) = match self.compat {
@@ -192,6 +193,7 @@ impl Config {
             return Some(conflict(key, reason));
         }
         let sides = self.eye_sizes().into_iter().flatten();
+        // eyes that are off are never drawn, so their size is free
         let most = sides
             .max()
             .filter(|most| self.vision_active && *most > self.render_size as usize)?;
@@ -203,6 +205,7 @@ impl Config {
 
     /// Returns the first value without effect, because the sense that it shapes is off.
     fn unused(&self) -> Option<Conflict> {
+        // a default says nothing of what the user wants, so only values that differ from it are refused
         let set = |key: &&super::Key| key.value(self) != key.default_value();
         let conflict = |key: &super::Key, reason: &str| (key.name, key.value(self).to_yaml(), reason.to_string());
         if self.age.is_none() {
@@ -228,6 +231,7 @@ impl Config {
             let reason = "it is that of MIMo's age, and `age` is none; set `age`, 0 to 24 months";
             return Some(("delay_by_age", delays.by_age.to_string(), reason.to_string()));
         }
+        // either would win in silence over the other
         if delays.by_age && delays.sensory != 0.0 {
             let reason = "with `delay_by_age` each sense has the delay of MIMo's age; leave it out, or give `delay_touch`, `delay_vision`, .. \
                           what they have instead";
@@ -243,10 +247,12 @@ impl Config {
         ];
         for (key, delay) in each {
             let Some(delay) = delay else { continue };
+            // milliseconds are rounded to steps, whose length a user need not know; a fraction of a step is a mistake
             if delays.unit == DelayUnit::Steps && delay.fract() != 0.0 {
                 let reason = "it is counted in whole steps; use a whole number, or set `delay_unit: ms`";
                 return Some((key, format!("{delay:?}"), reason.to_string()));
             }
+            // the lines of all delays are allocated when the environment is made
             let steps = delays.steps(delay, self.frame_skip);
             if steps > MAX_DELAY {
                 let step = Delays::step_ms(self.frame_skip);
@@ -259,6 +265,7 @@ impl Config {
             VisionOutput::Gray => 1,
             VisionOutput::Depth | VisionOutput::Segmentation => 4,
         };
+        // a delay of images is the only one whose memory can exceed a gigabyte within the limit of steps
         let pixels: usize = self.eye_sizes().iter().map(|[width, height]| width * height).sum();
         let images = pixels * self.vision_outputs.iter().map(bytes).sum::<usize>();
         let waiting = self.sense_delay(delays.vision, latencies::SIGHT).saturating_mul(images);

@@ -12,6 +12,7 @@ impl Config {
             return;
         };
         for (index, key) in KEYS.iter().enumerate() {
+            // a key that differs was set by the caller's base configuration, which a task must not overwrite
             if !given(index) && key.value(self) == key.default_value() {
                 key.assign(self, &key.value(&own));
             }
@@ -104,6 +105,7 @@ fn second_infant(config: &Config) -> Option<Conflict> {
     } else {
         ("other_age", config.other_age?.to_string())
     };
+    // ignored, the key would let a scene run without the infant that its author expects
     let reason = "only a custom document has a second infant; set `scene` to its path, or leave it out";
     Some((key, value, reason.to_string()))
 }
@@ -130,6 +132,7 @@ pub(super) fn conflict(config: &Config) -> Option<Conflict> {
             reason.to_string(),
         ));
     }
+    // they use BabyBench's scenes and actuation, so what MIMo's own tasks exclude does not concern them
     if matches!(config.behavior, Behavior::Mobile | Behavior::Play) {
         return own_conflict(config);
     }

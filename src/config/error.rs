@@ -192,6 +192,7 @@ pub(super) fn nearest(text: &str, known: impl Iterator<Item = &'static str>) -> 
     let text = text.to_ascii_lowercase(); // names are ASCII, and tables of all other letters are 16 kB of a WebAssembly module
     known
         .map(|name| (strsim::damerau_levenshtein(&text, name), name))
+        // a longer name may have more typing errors; with more allowed, most words would resemble some key
         .filter(|(distance, name)| *distance <= 1 + name.len() / 4)
         .min_by_key(|(distance, _)| *distance)
         .map(|(_, name)| name)

@@ -139,6 +139,7 @@ impl KeyKind {
 
     /// Parses a YAML scalar. `plain` is false for quoted text, which is always text.
     pub(super) fn parse(&self, text: &str, plain: bool) -> Result<KeyValue, ValueFault> {
+        // `none` in quotes means none as well: these keys have no other words
         if self.allows_none() && (text == NONE || plain && NULL.contains(&text)) {
             return Ok(KeyValue::None);
         }
@@ -156,9 +157,11 @@ impl KeyKind {
             }
             Self::Number { .. } | Self::NoneOr { .. } | Self::NoneOrWhole { .. } => return Err(ValueFault::WrongType),
             Self::Choice(names) => KeyValue::Choice(named(text, names)?),
+            // by the ending alone: whether the file exists is known when the scene is made, with the caller's assets
             Self::ChoiceOrFile { ending, .. } if text.ends_with(ending) => KeyValue::Text(text.to_string()),
             Self::ChoiceOrFile { names, .. } => KeyValue::Choice(named(text, names)?),
             Self::Text | Self::Document
+                // PyYAML reads `save_dir: 1` as a number and `off` as false, so that the kit would see another value
                 if plain && (boolean(text).is_some() || number(text) != Err(ValueFault::WrongType)) =>
             {
                 return Err(ValueFault::WrongType);
@@ -174,6 +177,7 @@ impl KeyKind {
             return Err(ValueFault::WrongType);
         };
         let name = named(text, names)?;
+        // an output that is named twice would be twice in the memory of the observation, under one key
         if list.contains(&name) {
             return Err(OUT_OF_RANGE);
         }
@@ -242,6 +246,7 @@ fn whole(text: &str) -> Result<u64, ValueFault> {
         return Err(ValueFault::WrongType);
     }
     let number = digits.replace('_', "").parse().map_err(|_| OUT_OF_RANGE)?;
+    // -0 is a whole number to PyYAML
     if text.starts_with('-') && number != 0 {
         Err(OUT_OF_RANGE)
     } else {
@@ -272,6 +277,7 @@ fn quoted(text: &str) -> String {
         match c {
             '"' | '\\' => out.extend(['\\', c]),
             ' '..='~' => out.push(c),
+            // names of folders stay legible in any script; marks, spaces and the like are escaped, as they may be invisible
             _ if c.is_alphanumeric() => out.push(c),
             _ => out.push_str(&format!("\\U{:08X}", u32::from(c))),
         }

@@ -17,6 +17,7 @@ pub(crate) const BALANCE: &Latency = &[[0.0, 13.3]];
 
 /// Returns a latency at an age in months, ms.
 pub(super) fn latency(of: &Latency, age: f64) -> f64 {
+    // the first measurement after the age; before all of them and after the last one the nearest holds
     let after = of.iter().position(|[at, _]| *at > age).unwrap_or(of.len());
     match (of[..after].last(), of.get(after)) {
         (Some(&[from, early]), Some(&[to, late])) => early + (late - early) * (age - from) / (to - from),

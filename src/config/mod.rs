@@ -182,6 +182,7 @@ impl Config {
                 self.overlay_yaml_in(text, &file, folder, limits)
             }
             Err(error) => {
+                // the column counts characters, as editors do, not bytes
                 let good = &bytes[..error.valid_up_to()];
                 let line = 1 + good.iter().filter(|byte| **byte == b'\n').count() as u32;
                 let column = 1 + String::from_utf8_lossy(good)
@@ -241,6 +242,7 @@ impl Config {
             behavior,
             ..Self::default()
         };
+        // nothing was given in a file, so every key takes the default of the task
         config.take_defaults(|_| false);
         config
     }
@@ -265,6 +267,7 @@ impl Config {
             position,
         };
         for key in Self::keys() {
+            // fields are public, so a program may have set any value
             let value = key.value(self);
             if let Err(misfit) = key.kind.check(&value) {
                 return Err(yaml::refusal(

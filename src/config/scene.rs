@@ -55,6 +55,7 @@ impl Scene {
     /// Returns the scene of the library with this name, or otherwise the document at this path; `None` if it is neither a name nor ends
     /// in `.xml`.
     pub fn from_name(name: &str) -> Option<Self> {
+        // names come first, so a document called `crib` needs its ending
         let known = Self::LIBRARY.iter().find(|scene| scene.name() == name);
         let file = || name.ends_with(Self::ENDING).then(|| Self::File(name.to_string()));
         known.cloned().or_else(file)
@@ -64,6 +65,7 @@ impl Scene {
     /// name is not UTF-8.
     pub(super) fn starting_at(&self, folder: &Path) -> Option<Self> {
         match self {
+            // a configuration given as text has no folder: the path stays relative to the working directory
             Self::File(path) if folder.components().next().is_some() => {
                 folder.join(path).to_str().map(|path| Self::File(path.to_string()))
             }

@@ -33,12 +33,14 @@ impl Config {
         let left = [self.eyes.width_left, self.eyes.height_left];
         let right = [self.eyes.width_right, self.eyes.height_right];
         let own = [left, right];
+        // width and height fall back one by one: the eye's own, that of both eyes, the square
         own.map(|[w, h]| [w.or(width), h.or(height)].map(|side| side.unwrap_or(self.vision_resolution) as usize))
     }
 
     /// Returns the delay of a sense, in steps of the environment: its own, or that of MIMo's age, or that of all senses.
     pub(crate) fn sense_delay(&self, own: Option<f64>, of_age: &Latency) -> usize {
         match (own, self.age) {
+            // latencies are measured in milliseconds, whatever unit the keys have
             (None, Some(age)) if self.delays.by_age => rounded(latency(of_age, age) / Delays::step_ms(self.frame_skip)),
             _ => self.delays.steps(own.unwrap_or(self.delays.sensory), self.frame_skip),
         }

@@ -87,6 +87,7 @@ impl<'de> Visitor<'de> for ConfigVisitor {
             }
         }
         if config.behavior != Config::default().behavior {
+            // only keys that are missing take the default of the task; a map that holds all keys comes back as it was written
             config.take_defaults(|key| seen[key]);
         }
         config.validate().map_err(A::Error::custom)?;
@@ -150,6 +151,7 @@ impl<'de> DeserializeSeed<'de> for ValueSeed {
     type Value = KeyValue;
 
     fn deserialize<D: Deserializer<'de>>(self, deserializer: D) -> Result<KeyValue, D::Error> {
+        // such formats know the type of what they hold, and a wrong one gets an error in our words
         if deserializer.is_human_readable() {
             return deserializer.deserialize_any(self);
         }
@@ -181,6 +183,7 @@ impl<'de> Visitor<'de> for ValueSeed {
     fn visit_u64<E: serde::de::Error>(self, number: u64) -> Result<KeyValue, E> {
         self.checked(match self.key.kind {
             KeyKind::ZeroOrAtLeast(_) | KeyKind::Number { .. } | KeyKind::NoneOr { .. } => {
+                // JSON writes 2.0 as 2
                 KeyValue::Number(number as f64)
             }
             _ => KeyValue::Whole(number),
@@ -193,6 +196,7 @@ impl<'de> Visitor<'de> for ValueSeed {
             Err(_) if matches!(self.key.kind, KeyKind::Whole { .. } | KeyKind::NoneOrWhole { .. }) => {
                 Err(self.refusal(ValueFault::OutOfRange { nearest: None }, number.to_string()))
             }
+            // a negative number, which the range of the key judges
             Err(_) => self.visit_f64(number as f64),
         }
     }
@@ -226,7 +230,11 @@ impl<'de> Visitor<'de> for ValueSeed {
     }
 
     fn visit_some<D: Deserializer<'de>>(self, deserializer: D) -> Result<KeyValue, D::Error> {
-        deserializer.deserialize_f64(self)
+        // binary formats store whole numbers and others in different ways
+        match self.key.kind {
+            KeyKind::NoneOrWhole { .. } => deserializer.deserialize_u64(self),
+            _ => deserializer.deserialize_f64(self),
+        }
     }
 
     fn visit_seq<A: SeqAccess<'de>>(self, mut list: A) -> Result<KeyValue, A::Error> {
@@ -285,6 +293,7 @@ mod tests {
         config.measurements.foot_length = Some(7.25);
         config.delays.vision = Some(3.0);
         config.eyes.foveation_left = Some(2.0);
+        config.eyes.width_left = Some(200);
         for config in [Config::default(), config] {
             let bytes = postcard::to_stdvec(&config).expect("bytes");
             assert_eq!(postcard::from_bytes(&bytes), Ok(config));

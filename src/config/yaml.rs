@@ -22,6 +22,7 @@ pub(super) fn read(text: &str, file: &str, config: &mut Config) -> Result<Vec<Op
     reader.start()?;
     let mut positions = vec![None; KEYS.len()];
     while let Some((index, value, position)) = reader.entry(&positions)? {
+        // a value that parses may still not convert, when a key's kind and the type of its field differ
         let key = &KEYS[index];
         if !key.assign(config, &value) {
             let location = reader.location(position);
@@ -62,7 +63,9 @@ type YamlEvents<'t> = Parser<'t, granit_parser::StrInput<'t>>;
 
 fn parser(text: &str) -> YamlEvents<'_> {
     let mut options = Options::default();
+    // comments would be events between a key and its value
     options.set_emit_comments(false);
+    // editors of Windows write a byte order mark
     Parser::new_from_str_with_options(text.strip_prefix('\u{feff}').unwrap_or(text), options)
 }
 
@@ -90,6 +93,7 @@ impl<'t> YamlReader<'t> {
         match self.events.next() {
             Some(Ok((event, span))) => Ok((event, position(&span.start))),
             Some(Err(error)) => Err(self.syntax(&error)),
+            // the parser ends after StreamEnd, which callers have already seen
             None => Ok((Event::StreamEnd, (1, 1))),
         }
     }
@@ -136,6 +140,7 @@ impl<'t> YamlReader<'t> {
                 nearest,
             });
         };
+        // PyYAML keeps the last one in silence, which hides a mistake
         if let Some((first_line, _)) = seen[index] {
             let location = self.location(at);
             return Err(ConfigError::DuplicateKey {

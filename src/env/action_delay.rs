@@ -50,6 +50,7 @@ impl ActionDelay {
     /// Returns the action that reaches the actuators when `action` is given.
     pub fn pass<'a>(&'a mut self, action: &'a [f32], rng: &mut NumpyRng) -> &'a [f32] {
         let action = match &mut self.line {
+            // delayed first: the noise is that of the motor, at the end of the nerve
             Some(line) => line.pass(action),
             None => action,
         };

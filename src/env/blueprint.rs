@@ -135,6 +135,7 @@ impl Blueprint {
     /// An invalid configuration, assets that do not load, a scene that the engine cannot simulate or that diverges, and errors of the
     /// task.
     pub fn with(config: Config, options: BlueprintOptions) -> Result<Self, EnvError> {
+        // fields of a configuration are public, and what follows relies on their bounds
         config.validate()?;
         if config.renderer == RendererKind::Wgpu && cfg!(not(feature = "wgpu")) {
             return Err(RenderError::NoWgpu.into());
@@ -143,6 +144,7 @@ impl Blueprint {
             return Err(EnvError::NoRapier);
         }
         let given = options.assets;
+        // the task chooses the document, so it comes before the model
         let task = options.task.unwrap_or_else(|| of_config(&config));
         let model = Arc::new(task_model(&config, &*task, &*given)?);
         let skin = if config.touch_enabled() {
@@ -159,6 +161,7 @@ impl Blueprint {
             gpu: Arc::default(),
         };
         let blueprint = Self::settled(config, task, model, surface)?;
+        // a texture that cannot be read is then an error here and not in the first step
         if blueprint.config.vision_active {
             blueprint.scenery()?;
         }
@@ -173,12 +176,14 @@ impl Blueprint {
         surface: SkinAndScenery,
     ) -> Result<Self, EnvError> {
         let engines = Arc::new(Engines::new(&config, &model)?);
+        // once for all environments, which copy a task that knows its scene
         let sizes = task.bind(&config, &model)?;
         let paths = Paths::new(&config.mocap_motion, &model)?.map(Arc::new);
         let tables = SharedTables::new(&config, &model)?;
         let settled = SettledScene::new(&config, &*task, &engines, &*tables.actuation, &model, paths.as_deref())?;
         let identity = Arc::new(Identity::new(&model, &config));
         let params = settled.params;
+        // changes are told against it, also after several
         let origin = UnchangedModel {
             model: model.clone(),
             params: params.clone(),

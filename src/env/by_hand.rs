@@ -73,10 +73,12 @@ impl<'a> ManualControl<'a> {
         let env = self.env;
         let len = env.action_space().len();
         let (actions, rest) = start_actions.split_at(start_actions.len() - start_actions.len() % len.max(1));
+        // the remainder is refused as the short action that it is
         if !rest.is_empty() {
             env.check_action(rest)?;
         }
         let actions = actions.chunks_exact(len.max(1));
+        // all are checked before the first acts, so that a bad one changes nothing
         actions.clone().try_for_each(|action| env.check_action(action))?;
         env.end_episode();
         let mut scene = env.play().scene;
@@ -99,6 +101,7 @@ impl<'a> ManualControl<'a> {
         env.restore(snapshot)?;
         env.by_hand().refresh()?;
         // the values sensed now replace those of the snapshot
+        // a picture that is still to be drawn stays so
         let picture = env.senses.picture;
         env.restore(snapshot)?;
         (env.senses.known, env.senses.picture) = (true, picture);
@@ -119,6 +122,7 @@ impl<'a> ManualControl<'a> {
         self.env.senses.forget_picture();
         let mut scene = self.env.play().scene;
         scene.forget();
+        // after `forget`, which sets all controls to 0: servos rest at their angles
         scene.actuation.reset(scene.model, scene.state);
         self.env.action_delay.rest();
         let phase = self.env.phase();
@@ -167,6 +171,7 @@ impl<'a> ManualControl<'a> {
     pub fn physics_step(&mut self) -> Result<(), EnvError> {
         self.env.senses.forget_picture();
         let stepped = self.env.play().scene.steps(1);
+        // a step by hand never makes an environment ready that needs a reset
         self.env.episode.ready &= stepped.is_ok();
         stepped
     }

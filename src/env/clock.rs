@@ -49,6 +49,7 @@ impl Clock {
 
     fn is_due_at(&self, step: u64) -> bool {
         let looks = |step: u64| (step as f64 * self.per_step + self.phase).floor();
+        // from the count of steps, not from a sum of periods, whose rounding would add up over an episode
         looks(step) > looks(step - 1)
     }
 

@@ -106,6 +106,7 @@ impl EngineMaker {
             EngineKind::Soft => {
                 let options = SoftOptions {
                     double_weld_torque,
+                    // programs may read accelerations and wrenches of bodies, even if no sensor of the scene does
                     post_constraint: true,
                     ..SoftOptions::default()
                 };

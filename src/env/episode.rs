@@ -39,6 +39,7 @@ impl Env {
         let StagedTask { mut scene, task, .. } = self.play();
         task.reset(&mut scene)?;
         self.begin_episode()?;
+        // here, too: a reset of an environment of a vector works in a scratch state
         self.check_shared()?;
         Ok(self.observation())
     }
@@ -57,6 +58,7 @@ impl Env {
     pub(super) fn begin_episode(&mut self) -> Result<(), EnvError> {
         self.episode.steps = 0;
         self.info.steps = 0;
+        // success and return are those of one episode, whatever a program accumulates
         if !self.episode.accumulate || self.info.behavior.task().is_some() {
             self.task.forget();
             clear(&*self.task, &mut self.info);
@@ -64,11 +66,14 @@ impl Env {
         let StagedTask {
             mut scene, task, goals, ..
         } = self.play();
+        // before the senses, because the desired goal is part of the first observation
         task.begin(&mut scene, &mut goals.desired);
+        // after the start actions of the reset, which under `compat: reference` have passed through it
         self.action_delay.rest();
         self.senses.reset(self.phase());
         self.episode.ready = true;
         self.sense()?;
+        // for the achieved goal of the first observation; the reward that comes with it is dropped
         self.judge();
         (self.episode.reward, self.episode.terminated) = (0.0, false);
         Ok(())
@@ -77,6 +82,7 @@ impl Env {
     /// Returns the phase at which senses with rates of their own start an episode: a number from 0 to 1 derived from the generator
     /// without drawing from it, so that environments with different seeds sample in different steps.
     pub(super) fn phase(&self) -> f64 {
+        // of a copy: switching a sense's rate on changes no random choice
         let word = self.rng.clone().word();
         (word >> 11) as f64 / (1_u64 << 53) as f64
     }

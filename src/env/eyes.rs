@@ -108,6 +108,7 @@ pub fn draw_eyes<'e>(environments: impl IntoIterator<Item = &'e mut Env>) -> Res
             on_gpus.push(env);
             continue;
         }
+        // one after the other on the CPU, which keeps the order of random numbers of each environment
         env.senses.observe_eyes(env.physics.state(), &mut env.rng)?;
     }
     draw_on_gpus(&mut on_gpus)?;
@@ -123,6 +124,7 @@ fn draw_on_gpus(environments: &mut [&mut Env]) -> Result<(), EnvError> {
         let Some(gpu) = vision.renderer().shared_gpu() else {
             continue;
         };
+        // environments of several blueprints may be drawn in one call
         let known = batches.iter().position(|b| Arc::ptr_eq(&b.gpu, gpu));
         let index = known.unwrap_or(batches.len());
         if known.is_none() {

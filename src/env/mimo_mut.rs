@@ -75,6 +75,7 @@ impl MimoMut<'_> {
         }
         let other = env.blueprint.with_facial_expression(face)?.env()?;
         let (snapshot, ready, details) = (env.snapshot(), env.ready(), env.info.details.clone());
+        // a blueprint's pictures are shared, so another face needs another blueprint and with it another environment
         let mut before = env.become_grown(other);
         // only pictures differ, so the environment's own snapshot fits
         env.restore(&snapshot)?;
@@ -109,6 +110,7 @@ impl Env {
             new.eq_active.clone_from(&old.eq_active);
             new.eq_offset.clone_from(&old.eq_offset);
         }
+        // random choices go on as if nothing had happened
         std::mem::swap(&mut grown.rng, &mut self.rng);
         grown.by_hand().set_probe(self.probe.take());
         if self.shares() {

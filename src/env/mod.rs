@@ -191,14 +191,17 @@ impl Env {
     /// An action of wrong length or with numbers that are not finite, which leaves the state untouched. A simulation that diverged, after
     /// which [`Env::reset`] is needed.
     pub fn step(&mut self, action: &[f32]) -> Result<Step<'_>, EnvError> {
+        // a diverged state has numbers that no later step may build on
         if !self.episode.ready {
             return Err(EnvError::NotReset);
         }
+        // both checks come before anything changes: a refused step leaves the environment as it was
         self.check_action(action)?;
         self.physics.check_shape()?;
         self.mark(Some(EnvStage::Actuation));
         let frame_skip = self.blueprint.config().frame_skip;
         self.senses.begin_step();
+        // the action is copied, because a task may change it and the caller's slice is read-only
         let StagedTask {
             mut scene,
             task,
@@ -210,11 +213,13 @@ impl Env {
         task.before_step(applied);
         scene.set_action(applied, ActionTiming::InStep);
         let stepped = scene.advance(frame_skip).and_then(|()| task.after_step(&mut scene));
+        // some of the physics steps are done, so neither a repetition nor the next step would be right
         if let Err(e) = stepped {
             self.episode.ready = false;
             return Err(e);
         }
         self.mark(Some(EnvStage::Senses));
+        // clocks count this step before it is sensed, so a sense that is due looks at its end
         self.senses.advance();
         self.sense()?;
         self.finish_step();
@@ -230,6 +235,7 @@ impl Env {
             let actuation = self.blueprint.actuation();
             let (driven, extra) = (actuation.actuators(), actuation.extra_actuators());
             match index.checked_sub(expected - extra.len()) {
+                // muscles have two numbers per actuator, one block after the other
                 None => driven.get(index % driven.len().max(1)).copied(),
                 Some(index) => extra.get(index).copied(),
             }
@@ -260,6 +266,7 @@ impl Env {
     fn sense(&mut self) -> Result<(), EnvError> {
         self.physics.check_shape()?;
         let model = self.blueprint.model();
+        // a closure rather than a buffer: the task writes straight into the observation
         let (state, task) = (self.physics.state(), &*self.task);
         let append = |out: &mut [f64]| task.observe(state, out);
         self.senses

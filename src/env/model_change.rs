@@ -55,6 +55,7 @@ impl ModelChange {
                 });
             }
         }
+        // undoing the allowed changes must give the model of before; if not, something else was changed
         let mut rest = self.after.clone();
         for (to, from) in rows_mut(&mut rest).into_iter().zip(rows(&self.before)) {
             to.copy_from_slice(from);
@@ -78,6 +79,7 @@ impl ModelChange {
         let changed = rows(&self.before).into_iter().zip(rows(&self.after));
         for (to, (before, after)) in to.into_iter().zip(changed) {
             for ((to, was), is) in to.iter_mut().zip(before).zip(after) {
+                // numbers that the program left alone keep what a task has made of them
                 if was != is {
                     *to = *is;
                 }
@@ -154,14 +156,17 @@ impl ModelMut<'_> {
         edit(&mut after);
         let change = ModelChange { before, after };
         change.check()?;
+        // muscles would overwrite the gears in the next step, without a word
         if env.config().actuation_model == ActuationModel::Muscle && change.concerns("actuator_gear") {
             return Err(ModelChangeError::Muscles.into());
         }
+        // made whole before anything of the environment changes
         let blueprint = env.blueprint.changed(&change)?;
         // a picture still to be drawn shows the geoms as they are
         env.senses_mut().look()?;
         env.blueprint = blueprint;
         let model = env.blueprint.model();
+        // twice: for later episodes, and for the one that runs, whose parameters a task may have changed
         change.apply_to(&mut env.physics.base, model);
         change.apply_to(&mut env.physics.state_mut().params, model);
         env.physics.use_engines(env.blueprint.engines());
@@ -189,6 +194,7 @@ impl ModelMut<'_> {
         if changes.is_empty() && changed.is_empty() {
             return Ok(());
         }
+        // one change, so that the numbers are checked and the engines made once
         self.change(|arrays| {
             let all = CHANGEABLE.iter().zip(rows_mut(arrays).into_iter().zip(rows(&first)));
             for (name, (to, first)) in all {

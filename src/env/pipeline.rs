@@ -102,6 +102,7 @@ impl Pipeline {
         };
         match hold {
             None => apply(stages, &mut signal),
+            // noise belongs to a sample and is held with it; delays go on in every step
             Some((at, hold)) => {
                 let (of_looks, of_steps) = stages.split_at_mut(*at);
                 if looked {
@@ -129,6 +130,7 @@ impl Pipeline {
         for (own, others) in self.chains.iter_mut().zip(&mut other.chains) {
             let stages = std::mem::take(&mut others.stages);
             let (configured, added) = stages.into_iter().partition(|stage| stage.configured);
+            // those of the configuration stay, as the new senses have their own
             others.stages = configured;
             let added: Vec<ConfiguredTransform> = added;
             own.stages.extend(added);
@@ -160,6 +162,7 @@ impl Pipeline {
     /// Restores what the same transforms saved, from the front of `bytes`; `false` if the data do not fit.
     pub fn load(&mut self, bytes: &mut &[u8]) -> bool {
         self.chains.iter_mut().all(|TransformChain { stages, hold, .. }| {
+            // lengths come from the snapshot, which may be damaged, so each transform checks its own part
             let loaded = stages
                 .iter_mut()
                 .all(|stage| take_part(bytes).is_some_and(|part| stage.transform.load(part)));

@@ -26,6 +26,7 @@ impl<'a> ManualControl<'a> {
         self.set_position(qpos, qvel)?;
         let env = self.env;
         env.senses.forget_picture();
+        // the positions are set already, so what was computed belongs to another state
         if let Err(e) = env.physics.forward() {
             env.episode.ready = false;
             return Err(e.into());
@@ -73,11 +74,14 @@ impl<'a> ManualControl<'a> {
         let (rng, mut memory) = (env.rng.clone(), Vec::new());
         env.save_memory(&mut memory);
         let sensed = env.sense();
+        // sensing again has moved delays and pain on; this takes it back
         env.load_memory(&memory)?;
+        // and the noise is that of the next draw
         env.rng = rng;
         sensed?;
         let last = env.episode;
         env.judge();
+        // `judge` is for the achieved goal; reward and end stay those of the step
         env.episode = last;
         Ok(env.observation())
     }
@@ -91,6 +95,7 @@ impl<'a> ManualControl<'a> {
         self.set_position(qpos, qvel)?;
         self.env.senses.forget_picture();
         let forward = self.env.play().scene.forward();
+        // a whole state was set, so an environment that diverged is usable again
         self.env.episode.ready = forward.is_ok();
         forward
     }

@@ -81,6 +81,7 @@ impl SecondInfant {
         let actuator = |index: usize| self.actuators.get(index).copied();
         check_numbers(env.model(), action, self.actuators.len(), actuator)?;
         env.physics.check_shape()?;
+        // ids of another scene would drive other actuators
         self.fits(sizes(env.model()))?;
         set_controls(
             &mut env.physics.state_mut().ctrl,

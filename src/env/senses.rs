@@ -96,6 +96,7 @@ impl Senses {
         let pain = skin.filter(|_| config.pain_active);
         let pain = pain.map(|skin| Pain::new(model, skin.clone(), config));
         let touch = skin.map(|skin| Touch::configured(skin.clone(), config));
+        // space only where touch is transformed: without transforms the felt values themselves are observed
         let empty =
             |felt: Option<&SkinValues>| felt.map_or(SkinValues::new(0, 1), |v| SkinValues::new(v.sensors(), v.width()));
         let numbers = Sense::ALL.map(|sense| match sense {
@@ -129,6 +130,7 @@ impl Senses {
             if !senses.is_on(sense) {
                 continue;
             }
+            // taken out for the call, because a signal borrows all other senses
             let mut pipeline = std::mem::take(&mut senses.pipeline);
             pipeline.configure(model, config, sense, &senses.signal(sense));
             senses.pipeline = pipeline;
@@ -166,6 +168,7 @@ impl Senses {
     /// Adds a transform to a sense that is on.
     pub(super) fn add_transform(&mut self, sense: Sense, transform: Box<dyn Transform>) {
         self.pipeline.add(sense, transform);
+        // the transform would apply to a picture of a moment before it was added
         self.forget_picture();
         self.make_room();
     }
@@ -178,6 +181,7 @@ impl Senses {
 
     /// Takes over the last touch from other senses of the same body.
     pub(super) fn take_felt(&mut self, other: &mut Self) {
+        // swapped instead of copied: the other senses are dropped next
         std::mem::swap(&mut self.touch, &mut other.touch);
         std::mem::swap(&mut self.pain, &mut other.pain);
         std::mem::swap(&mut self.touch_values, &mut other.touch_values);
@@ -293,6 +297,7 @@ impl Senses {
         } else {
             PictureStatus::Drawn
         };
+        // last of all senses, so that their noise has the same numbers whether pictures are drawn or not
         if !lazy && !self.vision_deferred {
             self.observe_eyes(state, rng)?;
         }
@@ -313,6 +318,7 @@ impl Senses {
     /// Samples the skin.
     fn feel(&mut self, model: &Model, state: &State) {
         let Some(touch) = &mut self.touch else { return };
+        // pooled touch and pain follow from it, so they are computed whenever the skin looks, and never without it
         touch.observe(model, state);
         if self.pipeline.changes(Sense::Touch) {
             self.touch_values.copy_from(touch.felt());

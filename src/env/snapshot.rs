@@ -147,6 +147,7 @@ impl Env {
             bytes.extend_from_slice(&(geom as u32).to_le_bytes());
         }
         self.save_memory(&mut bytes);
+        // last, so that an error can name the keys that differ even if the numbers do not fit
         bytes.extend_from_slice(identity.keys.as_bytes());
         bytes.extend_from_slice(&(identity.keys.len() as u32).to_le_bytes());
         let sum = checksum(&bytes[HEADER..]);
@@ -181,6 +182,7 @@ impl Env {
         }
         let [step, steps, info_steps, ready, seed, drawn, counts @ ..] = whole;
         // headroom for counting; what tasks have in place of counters is a number
+        // tasks store a measure's bits in the place of a counter
         let counts_checked = if self.info.behavior.task().is_some() {
             &[][..]
         } else {
@@ -202,6 +204,7 @@ impl Env {
                 .actuation()
                 .prepare(self.blueprint.model(), self.physics.state_mut());
         }
+        // everything is checked before anything is written, so that a damaged snapshot changes nothing
         let (behavior, memory) = self.parse(&r, counts)?;
         self.load_memory(memory)?;
 
@@ -209,6 +212,7 @@ impl Env {
         for numbers in self.numbers_mut(&mut memory) {
             r.fill(numbers);
         }
+        // before the information, which the task writes from its memory
         self.task.load(&memory);
         for flags in self.flags_mut() {
             r.fill_flags(flags);
@@ -223,7 +227,9 @@ impl Env {
         self.conclude();
         (self.episode.reward, self.episode.terminated) = (reward, self.episode.terminated && steps > 0);
         self.episode.ready = ready == 1;
+        // the generator's position is stored as a count, which any version of it can restore
         self.rng = NumpyRng::at(seed, drawn);
+        // touch and images are not in the snapshot; showing those of the moment before would mix two moments
         self.senses.known = false;
         self.senses.forget_picture();
         Ok(())

@@ -187,6 +187,7 @@ impl Viewer {
     /// As [`Viewer::draw`].
     pub fn eyes_rgba(&mut self, env: &Env) -> Result<&[u8], EnvError> {
         let sizes = env.config().eye_sizes();
+        // taken out, because drawing borrows the viewer
         let optics = self.optics.take();
         let mut optics =
             optics.unwrap_or_else(|| [0, 1].map(|eye| pipeline::optics(env.model(), env.config(), eye, sizes[eye])));

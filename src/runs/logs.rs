@@ -96,6 +96,7 @@ fn make_folder(save_dir: &Path) -> Result<(), LogError> {
         path: path.clone(),
         source,
     })?;
+    // a run that was killed may have left parts of files
     sweep(&path);
     Ok(())
 }
@@ -111,6 +112,7 @@ fn own_folder(save_dir: &Path) -> Result<Arc<Owner>, LogError> {
 
 /// Returns an error if a link leads from the folder of logs, or from a file in it, out of the folder of the run.
 fn check_inside(path: &Path) -> Result<(), LogError> {
+    // the path is the folder `logs` or a file in it
     let logs = path.ancestors().take(2).find(|at| at.ends_with("logs"));
     let run = match logs.and_then(Path::parent) {
         // for a relative path: the current folder
@@ -123,6 +125,7 @@ fn check_inside(path: &Path) -> Result<(), LogError> {
     let (Ok(run), Ok(target)) = (run.canonicalize(), path.canonicalize()) else {
         return Ok(());
     };
+    // a folder from somebody else must not make this program overwrite or show files elsewhere
     if target.starts_with(&run) {
         Ok(())
     } else {
@@ -163,6 +166,7 @@ fn read_pickle(path: &Path, limits: &Limits) -> Result<Value, LogError> {
 
 /// Returns a whole number as Python's.
 fn whole(n: u64) -> i64 {
+    // a pickle's whole numbers are signed here; no counter of a run comes near the bound
     i64::try_from(n).unwrap_or(i64::MAX)
 }
 

@@ -62,6 +62,7 @@ impl RunVector {
     /// As [`VectorEnv::new`], [`start_training`](super::start_training).
     pub fn start(blueprint: &Blueprint, n: usize, options: VectorOptions, resume: bool) -> Result<Self, RunError> {
         let options = VectorOptions {
+            // episodes are logged at their end, which an automatic reset would hide
             autoreset: AutoresetMode::Disabled,
             ..options
         };
@@ -112,15 +113,18 @@ impl RunVector {
     pub fn step(&mut self, actions: &[f32]) -> Result<VectorStep<'_>, RunError> {
         let len = self.vector.single_action_space().len().max(1);
         let n = actions.len() / len;
+        // all of them, or a wrong length, which the vector refuses in its words
         if n == 0 || n >= self.vector.len() {
             return Ok(self.vector.step(actions)?);
         }
+        // the last steps of a training may be fewer than there are environments
         self.vector.send(actions, &self.ids[..n])?;
         Ok(self.vector.recv(n)?)
     }
 
     fn over(&self, env: usize) -> Result<bool, VectorError> {
         let env = self.vector.env(env)?;
+        // an environment that diverged needs a reset, too
         Ok(env.over() || !env.ready())
     }
 

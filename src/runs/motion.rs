@@ -272,6 +272,7 @@ impl Motion {
     /// Returns the number of frames.
     pub fn frames(&self) -> usize {
         match (&self.root, self.names.len()) {
+            // a motion of the root alone has no column of angles to count
             (Some(root), 0) => root.len(),
             (_, joints) => self.angles.len().checked_div(joints).unwrap_or(0),
         }

@@ -180,6 +180,7 @@ impl Recorder {
         // a relative path is that of now, wherever the program goes later
         let dir = dir.into();
         let dir = std::path::absolute(&dir).unwrap_or(dir);
+        // a record is a measurement: it is never overwritten in silence
         if dir.join(MANIFEST).exists() {
             return Err(RecordError::Exists { path: dir });
         }
@@ -197,6 +198,7 @@ impl Recorder {
             options,
         };
         describe::write_skin(env, &shared.dir)?;
+        // before any episode, so that the folder is a record whenever the program stops
         save(&shared.dir, &lock(&shared.manifest))?;
         Ok(Self {
             shared: Arc::new(shared),
@@ -251,6 +253,7 @@ impl Recorder {
         if self.rows.is_none() {
             return Err(RecordError::NotBegun);
         }
+        // before the step: a replay moves its generator there, so that noise has the same bits
         let drawn = env.drawn();
         env.step(action)?;
         // checksums include images
@@ -297,6 +300,7 @@ impl Recorder {
         let Some((number, mut rows)) = self.rows.take() else {
             return Ok(());
         };
+        // an episode without steps has nothing to repeat
         if rows.len() == 0 {
             self.spare = Some(rows);
             return Ok(());
@@ -306,6 +310,7 @@ impl Recorder {
         let (npz, arrays) = rows.archive()?;
         let bytes = npz.finish()?;
         let path = dir.join(&name);
+        // before the manifest, which must not name a file that is not there
         replace_file(&path, &bytes).map_err(|source| RecordError::Io { path, source })?;
         let description = EpisodeDescription {
             episode: number,
@@ -322,6 +327,7 @@ impl Recorder {
         let mut manifest = lock(&self.shared.manifest);
         let age = env.config().age;
         let description = EpisodeDescription {
+            // only a change of age is written down, as the configuration of the manifest has the first one
             age: (age != manifest.configuration.age).then_some(age),
             ..description
         };

@@ -95,6 +95,7 @@ impl RunEnv {
     /// # Errors
     /// Errors of the file system.
     pub fn finish_training(&mut self) -> Result<(), LogError> {
+        // the kit's code loses the episode that runs when a training ends
         if self.log.is_some() && self.env.config().compat == Compat::Api {
             self.log_episode()?;
         }
@@ -102,6 +103,7 @@ impl RunEnv {
     }
 
     fn log_episode(&mut self) -> Result<(), LogError> {
+        // before the record is made, so that an environment whose log cannot be written does not go on in this episode
         let steps = self.env.by_hand().end_episode();
         match &mut self.log {
             Some(log) => log.end_episode_of(steps, self.env.info()),
@@ -181,11 +183,13 @@ pub(super) fn open_training_log(blueprint: &Blueprint, resume: bool) -> Result<T
     };
     if resume {
         let task = blueprint.task();
+        // records of BabyBench's behaviors differ in their keys, which reading checks; those of tasks differ in a name
         if reports_outcome(task) {
             log.check_task(task.name())?;
         }
         keep_scene(blueprint)?;
     }
+    // after the log, which refuses a folder that belongs to another run
     write_scene_of(blueprint)?;
     Ok(log)
 }
@@ -198,6 +202,7 @@ pub(super) fn open_training_log(blueprint: &Blueprint, resume: bool) -> Result<T
 pub fn for_evaluation(blueprint: &Blueprint) -> Result<Env, EnvError> {
     let mut env = blueprint.env()?;
     env.by_hand()
+        // the kit's evaluation counts on from episode to episode
         .accumulate_info(blueprint.config().compat == Compat::Reference);
     Ok(env)
 }

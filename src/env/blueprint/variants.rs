@@ -54,6 +54,7 @@ impl Blueprint {
             ..Config::clone(&self.config)
         };
         let options = BlueprintOptions {
+            // the clone is bound to the old body, and binds again to the new one
             task: Some(self.task.clone_task()),
             assets: self.surface.given.clone(),
         };

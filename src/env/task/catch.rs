@@ -149,6 +149,7 @@ impl Catch {
     fn in_contact(&self, state: &State) -> bool {
         state.contact.iter().any(|c| {
             let [a, b] = c.geom;
+            // geoms of a contact are ordered by type, so the ball may be either
             let pair = a == self.geom && self.own[b] || b == self.geom && self.own[a];
             pair && c.force[0].abs() >= MIN_FORCE
         })
@@ -167,6 +168,7 @@ impl Catch {
 
     /// Draws the ball of an episode: place, size, mass, and the error of the eyes.
     fn throw(&mut self, scene: &mut TaskScene<'_>) -> Result<(), EnvError> {
+        // drawn under `compat: reference`, too, which draws it and does not use it
         let shift = SHIFT.map(|most| scene.rng.uniform_in(-most, most));
         let radius = scene.rng.uniform_in(RADIUS[0], RADIUS[1]);
         let mass = scene.rng.uniform_in(MASS[0], MASS[1]);
@@ -234,6 +236,7 @@ impl Task for Catch {
         scene.restart()?;
         self.throw(scene)?;
         scene.forward()?;
+        // the ball floats while the arm settles
         let gravity = std::mem::take(&mut scene.state.params.gravity);
         scene.actuation.reset(scene.model, scene.state);
         let settled = relax(scene, SETTLING);
@@ -242,6 +245,7 @@ impl Task for Catch {
         if !self.reference {
             self.memory.period = 0;
         }
+        // the head turns to the ball before the first observation
         self.after_step(scene)?;
         scene.forward()
     }
@@ -283,6 +287,7 @@ impl Task for Catch {
             0.0
         };
         let (ball, hand) = (view.state.xpos[self.target], view.state.xpos[self.hand]);
+        // below the hand or far from it: he cannot catch it any more
         let lost = ball[2] < hand[2] - LOST[0] || norm(sub(ball, hand)) > LOST[1];
         let contact = self.memory.past[self.memory.now()];
         terms.copy_from_slice(&[flag(contact), cost, flag(held), flag(lost)]);

@@ -151,6 +151,7 @@ impl Mobile {
     fn change_phase(&self, scene: &mut TaskScene<'_>) {
         let tied = self.phase(self.memory.steps) == REINFORCEMENT;
         let state = &mut *scene.state;
+        // tied where both are now, so that nothing jerks
         if tied && !state.params.eq_active[self.tie] {
             let [mobile, hook] = self.heights.map(|q| state.qpos[q] - scene.model.qpos0[q]);
             state.params.eq_offset[self.tie] = mobile - hook;
@@ -176,6 +177,7 @@ impl Mobile {
             if speed < ENDS || dot(velocity, *moving) < 0.0 {
                 *moving = [0.0; 3];
             }
+            // two thresholds: a limb that trembles around one would count again and again
             if *moving == [0.0; 3] && speed > BEGINS {
                 *moving = velocity;
                 self.memory.movements[limb][phase] += 1.0;
@@ -238,6 +240,7 @@ impl Task for Mobile {
     /// Attaches the cuff to the limb, and waits until the ribbon is at rest.
     fn settle(&self, scene: &mut TaskScene<'_>) -> Result<(), EnvError> {
         for (limb, &tether) in self.tethers.iter().enumerate() {
+            // in the parameters of a reset, so that it holds in every episode
             scene.base.eq_active[tether] = limb == self.limb;
         }
         scene.state.params.eq_active.copy_from_slice(&scene.base.eq_active);
@@ -250,6 +253,7 @@ impl Task for Mobile {
     }
 
     fn begin(&mut self, scene: &mut TaskScene<'_>, _desired: &mut [f64]) {
+        // kept for its allocation, as a reset allocates nothing
         let hung = std::mem::take(&mut self.memory.hung);
         self.memory = MobileMemory {
             hung,

@@ -102,6 +102,7 @@ impl Play {
                 match other {
                     GeomOwner::Hand => (seen.hand, seen.mimo) = (true, true),
                     GeomOwner::Mimo => seen.mimo = true,
+                    // what lies on something is not held
                     GeomOwner::World | GeomOwner::Toy(_) => seen.other = true,
                 }
             }
@@ -191,6 +192,7 @@ impl Task for Play {
                 toy.held = true;
                 holding = true;
             }
+            // toys that roll by themselves say nothing about him
             if toy.touched {
                 self.memory.path += norm(sub(place, toy.last));
                 toy.moved |= norm(sub(place, toy.start)) > MOVED;

@@ -71,11 +71,13 @@ impl Task for Reach {
         for (k, [low, high]) in BALL.into_iter().enumerate() {
             scene.state.qpos[self.ball + k] = start[self.ball + k] + scene.rng.uniform_in(low, high);
         }
+        // the random actions have set him and the ball in motion
         scene.state.qvel.fill(0.0);
         scene.forward()
     }
 
     fn begin(&mut self, scene: &mut TaskScene<'_>, desired: &mut [f64]) {
+        // the task succeeds when the ball has moved from here
         self.first = scene.state.xpos[self.target];
         if self.has_goals {
             desired.copy_from_slice(&self.first);

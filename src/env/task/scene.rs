@@ -225,6 +225,7 @@ impl<'a> TaskScene<'a> {
     pub fn rest(&mut self, steps: u32) -> Result<(), EnvError> {
         self.action.clear();
         self.action.resize(self.actuation.action_space().len(), 0.0);
+        // taken out for the call, so that its space is used again
         let action = std::mem::take(self.action);
         self.set_action(&action, ActionTiming::InReset);
         *self.action = action;
@@ -246,6 +247,7 @@ impl<'a> TaskScene<'a> {
             }
             engine.step(state)
         };
+        // one engine for all steps: its memory is warm in the cache
         let stepped = self.engine.lend(|engine| (0..steps).try_for_each(|_| step(engine)));
         Ok(stepped?)
     }

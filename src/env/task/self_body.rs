@@ -220,6 +220,7 @@ impl Task for SelfBody {
                 *achieved = f64::from(u8::from(self.touches(view, &[self.hand, self.fingers], target)));
             }
         }
+        // any force on the fingers counts for the reward, the touched target for success
         let felt = touch.body_values(self.fingers).iter().any(|v| *v != 0.0);
         (terms[0], terms[1]) = (0.0, f64::from(u8::from(felt)));
     }

@@ -151,6 +151,7 @@ pub(super) fn first(values: &[f64]) -> f64 {
 pub(super) fn shaken_start(scene: &mut TaskScene<'_>, base: usize) -> Result<(), EnvError> {
     scene.restart()?;
     for q in 0..scene.model.nq {
+        // a shaken root would lift him from the floor or press him into it
         if !(base..base + 7).contains(&q) {
             let noise = scene.rng.uniform_in(-NOISE, NOISE);
             scene.state.qpos[q] += noise;

@@ -36,6 +36,7 @@ impl KnownFile {
 
     /// Returns whether a file is unchanged, as far as its metadata show.
     fn is(&self, meta: &Metadata) -> bool {
+        // if another program has changed the file, all lines are written anew
         meta.is_file() && meta.len() == self.length && meta.modified().ok() == self.modified
     }
 }
@@ -117,6 +118,7 @@ impl JsonLines {
             self.adopt(path, resumed, before).ok().flatten()
         };
         let known = known.or_else(adopt).filter(usable);
+        // a failure to append is no error yet: writing everything anew may still work
         let added = known.and_then(|known| self.append(path, &known, recent.range(last(known.records)?..)).ok());
         if added.is_none() {
             self.write_all(path, visit)?;
@@ -161,6 +163,7 @@ impl JsonLines {
         replace_file_with(path, |file| {
             // the system copies this itself if it can
             let copied = io::copy(&mut files::open(path)?, file)?;
+            // it was replaced between the check and the copy
             if copied != known.length {
                 return Err(io::Error::other("it is a different file now"));
             }
@@ -213,6 +216,7 @@ struct LinesWriter<'l> {
 
 impl LinesWriter<'_> {
     fn push(&mut self, info: &Info) {
+        // the visit cannot be stopped, so the first error is kept for the end
         if self.written.is_err() {
             return;
         }

@@ -110,6 +110,7 @@ impl<F: PickleField> InfoSource for DictSource<'_, F> {
     fn geoms(&mut self, key: &'static str) -> Result<Vec<usize>, String> {
         let (most, beyond) = (self.limits.record_touches, self.limits.geoms);
         let numbers = self.value.get(key).and_then(|list| list.counts(most));
+        // ids become indices into tables of the model
         let numbers = numbers.filter(|ids| ids.iter().all(|&id| id < beyond));
         numbers.ok_or_else(|| format!("`{key}` is not a list of at most {most} geom ids below {beyond}"))
     }
@@ -121,6 +122,7 @@ impl<F: PickleField> InfoSource for DictSource<'_, F> {
         let name = name.filter(|name| quoted(name) == **name);
         let name =
             name.ok_or_else(|| format!("`{key}` is not the name of a task, a line of at most 200 characters"))?;
+        // thousands of records share one allocation of their task's name
         let last = self.task.take().filter(|last| **last == *name);
         Ok(self.task.insert(last.unwrap_or_else(|| name.into())).clone())
     }
@@ -171,10 +173,12 @@ impl<'a> RecordConverter<'a> {
         let task = &mut self.task;
         let info = Info::read(&mut DictSource { value, limits, task }).map_err(|e| format!("record {k}: {e}"))?;
         let behavior = discriminant(&info.behavior);
+        // a mean over records of two behaviors would mean nothing
         if *self.behavior.get_or_insert(behavior) != behavior || first.is_some() && first != self.task {
             return Err(format!("record {k} has another behavior than record 0"));
         }
         self.touches += info.behavior.touches().map_or(0, |t| t[0].len() + t[1].len());
+        // the memo of a pickle lets a small file hold the same list a million times
         if self.touches > limits.pickle_numbers {
             return Err("it has too many touches".to_string());
         }
@@ -221,6 +225,7 @@ pub(super) fn visit_bytes(
     });
     let reason = match root {
         Ok(PickleKind::List) => return Ok(()),
+        // the two kinds of logs stand side by side and are easily confused
         Ok(PickleKind::Dict(keys)) if keys.iter().any(|key| key == "qpos") => {
             "it is the log of an evaluation episode".to_string()
         }

@@ -83,6 +83,7 @@ impl TrainingLog {
     pub fn create(config: &Config) -> Result<Self, LogError> {
         let owner = own_folder(config.save_dir.as_ref())?;
         let log = Self::empty(config, owner, 0);
+        // at once, so that a folder that cannot be written is an error before hours of training
         if log.compat == Compat::Api {
             log.save()?;
         }
@@ -94,6 +95,7 @@ impl TrainingLog {
             save_dir: PathBuf::from(&config.save_dir),
             compat: config.compat,
             save_every: config.save_logs_every.max(1),
+            // a resumed log grows from the size that it has
             pickle: ListWriter::with_capacity(bytes),
             totals: TrainingTotals::default(),
             recent: VecDeque::new(),
@@ -138,6 +140,7 @@ impl TrainingLog {
     pub(in crate::runs) fn resume_with(config: &Config, names: Option<PartNames>) -> Result<Self, LogError> {
         let path = training_path(&config.save_dir);
         let beside = path.with_extension("jsonl");
+        // only if lines are missing beside a log are they all written, while its records are read anyway
         if !path.exists() || beside.exists() {
             return Ok(Self::resume(config)?.with_names(names));
         }
@@ -171,6 +174,7 @@ impl TrainingLog {
         };
         visit(path, &Limits::DEFAULT, |mut info| {
             info.details.regards = known.get(&self.totals.records).copied();
+            // the first record is compared with the first line, to see whether lines belong to the log
             first.get_or_insert_with(|| info.clone());
             each(&info);
             self.push(info);
@@ -213,10 +217,13 @@ impl TrainingLog {
         self.regards
             .extend(info.details.regards.map(|both| (self.totals.records, both)));
         self.totals.add(&info);
+        // formatted once, when an episode ends; a save then copies bytes
         self.pickle.push(|dict| fill(dict, &info));
+        // only programs that ask for all records pay for keeping them
         if let Some(records) = self.records.get_mut() {
             records.push(info.clone());
         }
+        // a score needs the last ten thousand records, and a run may have millions
         if self.recent.len() >= Self::RECENT {
             self.recent.pop_front();
         }
@@ -299,6 +306,7 @@ impl TrainingLog {
 
     fn end(&mut self, info: Info) -> Result<(), LogError> {
         let steps = info.steps;
+        // a reset right after resuming ends no episode
         let first = std::mem::take(&mut self.resumed);
         if steps == 0 && (first || self.compat == Compat::Api) {
             return Ok(());
@@ -308,6 +316,7 @@ impl TrainingLog {
             Compat::Api => self.totals.records as u64,
             Compat::Reference => steps,
         };
+        // under `compat: reference` it is the number of steps of the episode, as in the kit's code
         match count % self.save_every {
             0 => self.save(),
             _ => Ok(()),
@@ -323,6 +332,7 @@ impl TrainingLog {
         let path = training_path(&self.save_dir);
         let all = |each: &mut dyn FnMut(&Info)| self.visit(|info| each(&info));
         self.lines
+            // lines first: if the process dies in between, the pickle is the older one, and resuming it finds that its lines do not fit
             .save(&path.with_extension("jsonl"), self.totals.records, &self.recent, all)?;
         write(path, self.pickle.as_bytes())
     }
@@ -335,11 +345,13 @@ fn regards_of(path: &Path) -> BTreeMap<usize, RegardCounts> {
         page_regards: PerEyeAndHand<u64>,
         kit_regards: PerEyeAndHand<u64>,
     }
+    // the lines are an extra: a log without them is whole
     let Ok(bytes) = files::read(path, Limits::DEFAULT.pickle_bytes as u64) else {
         return BTreeMap::new();
     };
     let lines = bytes.split(|byte| *byte == b'\n').enumerate();
     let both = lines.filter_map(|(record, line)| {
+        // a line of another program lacks these counts
         let line: Line = serde_json::from_slice(line).ok()?;
         let (page, kit) = (line.page_regards, line.kit_regards);
         Some((record, RegardCounts { page, kit }))

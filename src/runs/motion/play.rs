@@ -64,6 +64,7 @@ pub fn play_motion(
         MotionMode::Kinematic => None,
         MotionMode::Tracking => Some(Tracker::new(env)?),
     };
+    // from the start of the motion, so that tracking begins without a jump
     course.at(0.0, dt, &mut qpos, &mut qvel);
     env.by_hand().set_state(&qpos, &qvel)?;
     let mut recorder = recorder.map(|(recorder, episode)| {
@@ -72,6 +73,7 @@ pub fn play_motion(
     });
     let still = vec![0.0; env.action_space().len()];
     for step in 0..steps {
+        // a tracked step should end where the motion is then; a shown one is the pose itself
         let time = if tracker.is_some() { step + 1 } else { step } as f64 * dt;
         course.at(time.min(motion.seconds()), dt, &mut qpos, &mut qvel);
         match &mut tracker {
@@ -79,6 +81,7 @@ pub fn play_motion(
                 env.by_hand().show(&qpos, &qvel)?;
                 if let Some(recorder) = &mut recorder {
                     env.senses_mut().look()?;
+                    // no action led there, and the archive needs one for each step
                     recorder.note(env, &still)?;
                 }
             }
@@ -183,6 +186,7 @@ impl<'m> MotionTrajectory<'m> {
     /// Writes positions at a time, s, and their velocities: differences between the step before and the one after.
     fn at(&self, time: f64, dt: f64, qpos: &mut [f64], qvel: &mut [f64]) {
         let end = self.motion.seconds();
+        // central differences, which become one-sided at both ends of the motion
         let (before, after) = ((time - dt).max(0.0), (time + dt).min(end));
         let span = after - before;
         let per_second = if span > 0.0 { 1.0 / span } else { 0.0 };
@@ -245,6 +249,7 @@ fn hint<'n>(name: &str, known: impl Iterator<Item = &'n str>) -> String {
 /// Returns the indices of MIMo's free joint in positions and velocities, if he has one.
 fn free_root(model: &Model) -> Option<(usize, usize)> {
     let mut body = model.body("hip")?;
+    // the free joint may be that of a body above the hip, on which MIMo is placed
     while body > 0 {
         let first = model.body_jntadr[body];
         if model.body_jntnum[body] > 0 && model.jnt_type[first] == JointType::Free {

@@ -84,6 +84,7 @@ impl EpisodeRows {
 
     /// Starts an episode with the allocations of the last one.
     pub fn begin(&mut self, env: &Env, options: &RecordOptions) {
+        // an episode's rows are reused by the next, without new allocations
         self.clear();
         let state = env.state();
         self.dt = env.blueprint().dt();
@@ -152,6 +153,7 @@ impl EpisodeRows {
         let step = self.len();
         self.drawn.push(drawn as i64);
         self.actions.extend_from_slice(action);
+        // for analysis, at half the size; a replay computes the exact numbers, which the checksum checks
         self.qpos.extend(state.qpos.iter().map(|&q| q as f32));
         self.qvel.extend(state.qvel.iter().map(|&q| q as f32));
         if let (Some(touch), Some(values)) = (&mut self.touch, observation.touch) {
@@ -178,6 +180,7 @@ impl EpisodeRows {
                 rows.extend(values);
             }
         }
+        // last, as it covers all that the step has left
         self.checksum.push(checksum(env));
     }
 

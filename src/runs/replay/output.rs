@@ -258,6 +258,7 @@ impl Replay {
                     (Some(eye), Some(image)) if chosen(eye, image) => {
                         let [width, height] = self.eye_sizes[eye_of(entry)];
                         let shape = [k, height, width, 3];
+                        // only colours have a last axis
                         let dimensions = if image == VisionOutput::Rgb { 4 } else { 3 };
                         add(npz, entry.key, &shape[..dimensions], rows.values())
                     }

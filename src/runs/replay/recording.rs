@@ -76,6 +76,7 @@ impl Recording {
         } else {
             Vec::new()
         };
+        // with several episodes the arrays at the top are those of the first
         let (qpos0, qvel0, activity0) = match episodes.first() {
             Some(first) => (first.qpos.clone(), first.qvel.clone(), first.activity.clone()),
             None => (
@@ -84,6 +85,7 @@ impl Recording {
                 if arrays.has("activity0") {
                     arrays.vector("activity0", muscles)?
                 } else {
+                    // recordings of motors have no activity
                     vec![0.0; muscles]
                 },
             ),
@@ -112,6 +114,7 @@ impl EpisodeStart {
     /// Reads the starts of all episodes of a recording of `len` steps.
     fn read_all(arrays: &RecordingArrays, env: &Env, len: usize) -> Result<Vec<Self>, ReplayError> {
         let rows = arrays.archive.get_i64("reset_row")?;
+        // resets are looked up row by row, and two in one row would hide each other
         let ascending = rows.data.windows(2).all(|w| w[0] < w[1]);
         let within = rows
             .data
