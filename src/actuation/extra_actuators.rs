@@ -1,6 +1,6 @@
 //! Actuators of bodies that are not MIMo's.
 
-use crate::actuation::{Actuation, named, set_controls};
+use super::{Actuation, named, set_controls};
 use crate::model::Model;
 use crate::physics::State;
 use crate::spaces::BoxSpace;

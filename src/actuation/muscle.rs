@@ -2,7 +2,7 @@
 
 mod params;
 
-use crate::actuation::{Actuation, ActuationError, named};
+use super::{Actuation, ActuationError, named};
 use crate::config::Compat;
 use crate::mimo::{MimoBodies, MimoJoints};
 use crate::model::Model;

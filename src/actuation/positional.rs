@@ -1,6 +1,6 @@
 //! Position servos: the action is the desired angle.
 
-use crate::actuation::{Actuation, ActuationError, clear_muscles, named};
+use super::{Actuation, ActuationError, clear_muscles, named};
 use crate::config::Compat;
 use crate::mimo::MimoBodies;
 use crate::model::{BiasType, DynType, EqualityKind, GainType, Model};

@@ -1,6 +1,6 @@
 //! Torque motors that respond at once; springs and dampers are in the joints.
 
-use crate::actuation::{Actuation, clear_muscles, named};
+use super::{Actuation, clear_muscles, named};
 use crate::config::Compat;
 use crate::mimo::MimoBodies;
 use crate::model::Model;

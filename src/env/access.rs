@@ -2,8 +2,8 @@
 
 use std::sync::Arc;
 
+use super::{Blueprint, Env, Goal, Info, Senses, SensesMut};
 use crate::config::Config;
-use crate::env::{Blueprint, Env, Goal, Info, Senses, SensesMut};
 use crate::model::Model;
 use crate::physics::State;
 use crate::sensors::ObservationEntry;

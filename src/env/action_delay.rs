@@ -6,7 +6,7 @@ use crate::spaces::{BoxSpace, ColoredNoise, NumpyRng};
 
 /// Passes actions to the actuators, immediately or after a delay, as they are or with noise that grows with them.
 #[derive(Clone, Debug)]
-pub(super) struct ActionDelay {
+pub(crate) struct ActionDelay {
     line: Option<DelayLine>,
     /// The action that reaches the actuators before the first of an episode.
     rest: Vec<f32>,

@@ -9,15 +9,15 @@ pub use options::BlueprintOptions;
 
 use std::sync::Arc;
 
+use super::engines::Engines;
+use super::paths::Paths;
+use super::pipeline::effective;
+use super::snapshot::Identity;
+use super::task::{TaskSizes, of_config, rewards};
+use super::{Env, EnvError, Goal, GoalError, Task};
 use crate::actuation::{self, Actuation};
 use crate::assets::AssetSource;
 use crate::config::{Config, EngineKind, RendererKind};
-use crate::env::engines::Engines;
-use crate::env::paths::Paths;
-use crate::env::pipeline::effective;
-use crate::env::snapshot::Identity;
-use crate::env::task::{TaskSizes, of_config, rewards};
-use crate::env::{Env, EnvError, Goal, GoalError, Task};
 use crate::mimo::scene_assets;
 use crate::model::Model;
 use crate::physics::{Engine, Params, Shared, State};

@@ -1,9 +1,8 @@
 //! Resets and steps that a program composes itself.
 
-use super::check_vector;
 use super::outcome::clear;
 use super::task::ActionTiming;
-use crate::env::{Env, EnvError, EnvProbe, EnvStage, Observation, Snapshot, Task};
+use super::{Env, EnvError, EnvProbe, EnvStage, Observation, Snapshot, Task, check_vector};
 use crate::math::{Quat, Vec3};
 use crate::physics::Probe;
 use crate::spaces::NumpyRng;

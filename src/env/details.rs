@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use crate::env::{PerEyeAndHand, PerHand};
+use super::{PerEyeAndHand, PerHand};
 use crate::model::Model;
 
 /// Additions to the reference's information. The pickles of logs leave them out.

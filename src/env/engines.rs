@@ -2,8 +2,8 @@
 
 use std::sync::Arc;
 
+use super::EnvError;
 use crate::config::{Compat, Config, EngineKind};
-use crate::env::EnvError;
 use crate::model::Model;
 use crate::physics::{Engine, SoftModel, SoftOptions, State};
 use crate::pool::Pool;
@@ -11,7 +11,7 @@ use crate::pool::Pool;
 use crate::rapier::{RapierModel, RapierOptions};
 
 /// The source of the engine that an environment steps with.
-pub(in crate::env) enum EngineSource<'a> {
+pub(crate) enum EngineSource<'a> {
     /// The environment's own engine, which a program requested or reads.
     Own(&'a mut dyn Engine),
     /// The engines that the environments of a blueprint share.
@@ -38,7 +38,7 @@ impl EngineSource<'_> {
 
 /// The engines of a blueprint. They keep nothing from one step to the next, so environments share them: a thread that steps many
 /// environments has the working memory of one engine in its cache instead of one for each.
-pub(in crate::env) struct Engines {
+pub(crate) struct Engines {
     kind: EngineMaker,
     /// An engine that answers questions about the model and never steps.
     reader: Box<dyn Engine>,

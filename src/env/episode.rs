@@ -1,9 +1,9 @@
 //! The life of an episode: its start, its counters, its end.
 
+use super::outcome::clear;
+use super::task::StagedTask;
+use super::{Env, EnvError, Observation};
 use crate::config::Compat;
-use crate::env::outcome::clear;
-use crate::env::task::StagedTask;
-use crate::env::{Env, EnvError, Observation};
 use crate::spaces::NumpyRng;
 
 /// The progress of an episode.

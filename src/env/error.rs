@@ -2,9 +2,9 @@
 
 use thiserror::Error;
 
+use super::{ModelChangeError, PathError, SnapshotError};
 use crate::actuation::ActuationError;
 use crate::config::ConfigError;
-use crate::env::{ModelChangeError, PathError, SnapshotError};
 use crate::mimo::{CustomSceneError, GrowthError, LockError, SceneError};
 use crate::mjcf_loader::LoadError;
 use crate::physics::EngineError;

@@ -2,8 +2,8 @@
 
 use std::sync::Arc;
 
-use crate::env::senses::PictureStatus;
-use crate::env::{Env, EnvError, Observation, Senses, SensesMut};
+use super::senses::PictureStatus;
+use super::{Env, EnvError, Observation, Senses, SensesMut};
 use crate::physics::State;
 use crate::render::{ImageBuffers, RenderRequest, SharedGpu, draw_on};
 use crate::sensors::EyeImages;

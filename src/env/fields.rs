@@ -2,8 +2,8 @@
 
 use std::sync::Arc;
 
-use crate::env::task::measures_of;
-use crate::env::{
+use super::task::measures_of;
+use super::{
     BehaviorInfo, EYE_HAND_PAIRS, Info, InfoDetails, Measures, Outcome, PerEyeAndHand, PerHand, RegardCounts, TaskInfo,
 };
 

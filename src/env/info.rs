@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use crate::env::{InfoDetails, Outcome, PerEyeAndHand, PerHand};
+use super::{InfoDetails, Outcome, PerEyeAndHand, PerHand};
 
 /// Parts in the denominator of the score for each hand: MIMo v1's 36 geoms without the two of the palm itself.
 pub(crate) const SCORED_PARTS: usize = 34;

@@ -1,7 +1,7 @@
 //! Changes of MIMo: locks, age and face.
 
+use super::{Env, EnvError};
 use crate::config::FacialExpression;
-use crate::env::{Env, EnvError};
 use crate::mimo::{LockReport, LockTarget};
 
 /// MIMo in an environment, to change him: [`Env::mimo_mut`].

@@ -3,9 +3,9 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
+use super::changeable::{CHANGEABLE, parameters, parameters_mut, rows, rows_mut};
+use super::{Blueprint, Env, EnvError, ModelChangeError};
 use crate::config::ActuationModel;
-use crate::env::changeable::{CHANGEABLE, parameters, parameters_mut, rows, rows_mut};
-use crate::env::{Blueprint, Env, EnvError, ModelChangeError};
 use crate::model::{Arrays, Model};
 use crate::physics::Params;
 

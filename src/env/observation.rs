@@ -1,6 +1,6 @@
 //! The results of a step: the observation, and the rest in Gymnasium's order.
 
-use crate::env::Info;
+use super::Info;
 use crate::sensors::{ObservationEntry, observation_entries};
 use crate::spaces::{Number, Values};
 

@@ -22,7 +22,7 @@ pub struct PathError {
 
 /// Poses of bodies over time.
 #[derive(Debug, PartialEq)]
-pub(super) struct Paths {
+pub(crate) struct Paths {
     /// The times of the poses, s, ascending. The first is the start of an episode.
     times: Vec<f64>,
     bodies: Vec<BodyPath>,

@@ -18,15 +18,15 @@
 
 use std::sync::{Arc, OnceLock};
 
-use crate::env::EnvError;
-use crate::env::engines::{EngineSource, Engines};
+use super::EnvError;
+use super::engines::{EngineSource, Engines};
 use crate::mimo::{LockReport, LockTarget, lock, lock_of, unlock};
 use crate::model::Model;
 use crate::physics::{Engine, EngineError, Params, Shared, State};
 
 /// What the last call of an engine began with, as far as the call, or a task after it, has changed it.
 #[derive(Clone, Debug, Default)]
-pub(in crate::env) struct LastEngineCall {
+pub(crate) struct LastEngineCall {
     call: EngineCall,
     time: f64,
     step: u64,
@@ -38,7 +38,7 @@ pub(in crate::env) struct LastEngineCall {
 
 /// A call of an engine.
 #[derive(Clone, Copy, Debug, Default)]
-pub(in crate::env) enum EngineCall {
+pub(crate) enum EngineCall {
     /// There was none.
     #[default]
     None,
@@ -84,7 +84,7 @@ pub(crate) enum ScratchUse {
 }
 
 /// The state of a scene and the engines that advance it.
-pub(in crate::env) struct Physics {
+pub(crate) struct Physics {
     /// The engines that all environments of the blueprint share.
     engines: Arc<Engines>,
     /// An engine of its own, on a program's request.

@@ -1,6 +1,6 @@
 //! States set by a program.
 
-use crate::env::{EnvError, ManualControl, Observation};
+use super::{EnvError, ManualControl, Observation};
 use crate::physics::EngineError;
 
 impl<'a> ManualControl<'a> {

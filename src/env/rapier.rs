@@ -1,6 +1,6 @@
 //! A scene in Rapier, for queries.
 
-use crate::env::{Blueprint, EnvError};
+use super::{Blueprint, EnvError};
 use crate::physics::State;
 use crate::physics::contact::Quirks;
 use crate::rapier::RapierScene;

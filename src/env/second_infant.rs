@@ -1,8 +1,8 @@
 //! The second infant of a scene.
 
+use super::{Blueprint, Env, EnvError, check_numbers};
 use crate::actuation::set_controls;
 use crate::config::ActuationModel;
-use crate::env::{Blueprint, Env, EnvError, check_numbers};
 use crate::mimo::{MimoBodies, MimoJoints};
 use crate::model::{Model, SensorType};
 use crate::physics::{EngineError, State};

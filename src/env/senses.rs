@@ -2,13 +2,13 @@
 
 use std::sync::Arc;
 
+use super::blueprint::SharedTables;
+use super::clock::Clock;
+use super::pipeline::Pipeline;
+use super::task::TaskSizes;
+use super::{Blueprint, EnvError, Observation, missing_camera};
 use crate::actuation::Actuation;
 use crate::config::VisionOutput;
-use crate::env::blueprint::SharedTables;
-use crate::env::clock::Clock;
-use crate::env::pipeline::Pipeline;
-use crate::env::task::TaskSizes;
-use crate::env::{Blueprint, EnvError, Observation, missing_camera};
 use crate::model::Model;
 use crate::physics::State;
 use crate::render::View;

@@ -2,7 +2,7 @@
 
 use std::ops::Deref;
 
-use crate::env::{Env, EnvError, Senses};
+use super::{Env, EnvError, Senses};
 use crate::physics::State;
 use crate::render::ImageBuffers;
 use crate::sensors::transform::{Sense, Transform};

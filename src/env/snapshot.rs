@@ -9,9 +9,9 @@ pub(super) use identity::Identity;
 
 use std::sync::Arc;
 
-use crate::env::fields::InfoSource;
-use crate::env::task::TaskEvent;
-use crate::env::{BehaviorInfo, Env, InfoValue};
+use super::fields::InfoSource;
+use super::task::TaskEvent;
+use super::{BehaviorInfo, Env, InfoValue};
 use crate::physics::Row as _;
 use crate::sensors::transform::Sense;
 use crate::spaces::NumpyRng;

@@ -1,6 +1,6 @@
 //! Pictures of environments for display.
 
-use crate::env::{Blueprint, Env, EnvError, missing_camera, pipeline};
+use super::{Blueprint, Env, EnvError, missing_camera, pipeline};
 use crate::math::Vec3;
 use crate::model::Model;
 use crate::render::{FreeCamera, Poses, RenderRequest, Renderer, View};

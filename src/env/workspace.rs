@@ -2,8 +2,8 @@
 
 use std::ops::{Deref, DerefMut};
 
-use crate::env::physics::ScratchUse;
-use crate::env::{Env, EnvError};
+use super::physics::ScratchUse;
+use super::{Env, EnvError};
 
 /// Whether steps and resets check [`Task::only_moves`](crate::env::Task::only_moves).
 const CHECKED: bool = cfg!(any(test, debug_assertions));

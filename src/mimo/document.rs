@@ -2,8 +2,8 @@
 
 use std::path::Path;
 
+use super::version::{MIMO, Version};
 use crate::config::{ActuationModel, Behavior, Config, Part, Scene};
-use crate::mimo::version::{MIMO, Version};
 
 /// Gives the path of the top document in the assets; includes and textures are found relative to it.
 pub const DOCUMENT: &str = "babybench/scene.xml";

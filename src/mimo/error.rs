@@ -2,7 +2,7 @@
 
 use thiserror::Error;
 
-use crate::mimo::{CustomSceneError, GrowthError};
+use super::{CustomSceneError, GrowthError};
 use crate::mjcf_loader::LoadError;
 use crate::physics::EngineError;
 

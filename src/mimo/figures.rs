@@ -1,8 +1,8 @@
 //! MIMo's stature and mass.
 
+use super::MimoJoints;
+use super::placement::reach;
 use crate::math::{column, dot, mat_t_vec};
-use crate::mimo::MimoJoints;
-use crate::mimo::placement::reach;
 use crate::model::Model;
 use crate::physics::{State, Topology, kinematics};
 

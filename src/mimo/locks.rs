@@ -6,8 +6,8 @@
 
 use thiserror::Error;
 
+use super::joint_part;
 use crate::config::Part;
-use crate::mimo::joint_part;
 use crate::model::{EqualityKind, Model};
 use crate::physics::Params;
 

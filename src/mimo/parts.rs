@@ -1,8 +1,8 @@
 //! The parts that MIMo's bodies belong to.
 
+use super::body_kind;
+use super::version::SECOND_PREFIX;
 use crate::config::Part;
-use crate::mimo::body_kind;
-use crate::mimo::version::SECOND_PREFIX;
 use crate::model::{JointType, Model, ObjType};
 
 /// Prefix of the names of MIMo's own joints.

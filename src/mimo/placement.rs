@@ -2,9 +2,9 @@
 
 use std::sync::Arc;
 
+use super::ROOT;
+use super::version::MIMO;
 use crate::math::Vec3;
-use crate::mimo::ROOT;
-use crate::mimo::version::MIMO;
 use crate::model::{EqualityKind, GeomType, Model};
 use crate::physics::{Engine, EngineError, SoftEngine, SoftOptions, State};
 

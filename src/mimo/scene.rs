@@ -1,15 +1,15 @@
 //! Scenes: documents with MIMo, compiled at his age.
 
+use super::custom_scene::{CustomScene, location};
+use super::document::{document_path, scene_xml};
+use super::error::SceneError;
+use super::growth::blame;
+use super::placement::{GeomOverlap, LowestPoint, overlaps};
+use super::version::{EYES, SECOND_PREFIX, Version};
+use super::{Growth, StrengthRow};
 use crate::assets::AssetSource;
 use crate::config::{Config, FacialExpression, Measurements};
 use crate::math::{Vec3, scale};
-use crate::mimo::custom_scene::{CustomScene, location};
-use crate::mimo::document::{document_path, scene_xml};
-use crate::mimo::error::SceneError;
-use crate::mimo::growth::blame;
-use crate::mimo::placement::{GeomOverlap, LowestPoint, overlaps};
-use crate::mimo::version::{EYES, SECOND_PREFIX, Version};
-use crate::mimo::{Growth, StrengthRow};
 use crate::mjcf_loader::{Draft, LoadError};
 use crate::model::Model;
 use crate::physics::compile;

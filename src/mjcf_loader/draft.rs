@@ -7,11 +7,10 @@ use crate::model::{BiasType, GeomType};
 
 use super::document::{Body, Camera, Document};
 use super::error::LoadError;
-use super::geom_volume;
 use super::spec::{Locations, Spec};
 use super::words::AutoBool;
 use super::xml::Tree;
-use super::{compile, read};
+use super::{compile, geom_volume, read};
 
 /// An MJCF document that was read and checked, with its default classes applied, and not yet compiled: sizes, positions,
 /// masses and strengths can be changed, as in MuJoCo's `mjSpec` before `mj_compile`. Names and ids stay.

@@ -10,12 +10,12 @@ use std::path::{Path, PathBuf};
 pub use play::{MotionMode, MotionResult, play_motion};
 use thiserror::Error;
 
+use super::RecordError;
 use crate::env::EnvError;
 use crate::files;
 use crate::formats::npz::{Npz, NpzError, NpzWriter};
 use crate::limits::Limits;
 use crate::math::{Quat, Vec3};
-use crate::runs::RecordError;
 
 /// An error in reading or playing a motion.
 #[derive(Debug, Error)]

@@ -2,10 +2,10 @@
 
 use std::sync::Arc;
 
+use super::transform::DelayValues as _;
+use super::{SkinLayout, SkinValues, Touch};
 use crate::config::{Compat, Config, PainOptions, TouchFunction};
 use crate::model::Model;
-use crate::sensors::transform::DelayValues as _;
-use crate::sensors::{SkinLayout, SkinValues, Touch};
 
 /// The sense of pain of one environment: a number for each touch sensor.
 ///

@@ -1,7 +1,7 @@
 //! The results of a step of a vector.
 
+use super::Infos;
 use crate::env::{EnvError, Observation};
-use crate::vector::Infos;
 
 /// The results of a step, a reset or [`VectorEnv::recv`](super::VectorEnv::recv): arrays with a row for each environment.
 /// They belong to the vector and change with the next call.

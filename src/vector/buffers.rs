@@ -1,11 +1,11 @@
 //! Caller-owned buffers for the results of a step of a vector.
 
+use super::VectorError;
+use super::layout::RowLayout;
 use crate::env::{Env, Observation};
 use crate::sensors::transform::Sense;
 use crate::sensors::{ObservationEntry, observation_entries};
 use crate::spaces::{Number, ValuesMut};
-use crate::vector::VectorError;
-use crate::vector::layout::RowLayout;
 
 macro_rules! buffers {
     (

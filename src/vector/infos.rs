@@ -1,7 +1,7 @@
 //! Information of all environments as arrays.
 
+use super::layout::RowLayout;
 use crate::env::{BehaviorInfo, Info, Outcome};
-use crate::vector::layout::RowLayout;
 
 /// Information of all environments, as arrays of rows. Lists in the order of first touch, and names, are in
 /// [`VectorEnv::env`](super::VectorEnv::env)`(i)?.info()`.

@@ -1,9 +1,9 @@
 //! Estimates of the memory of environments, before they are made.
 
+use super::layout::RowLayout;
+use super::{AutoresetMode, VectorError, VectorOptions, options};
 use crate::config::VisionOutput;
 use crate::env::Env;
-use crate::vector::layout::RowLayout;
-use crate::vector::{AutoresetMode, VectorError, VectorOptions, options};
 
 /// The limit on systems that do not report their memory.
 const DEFAULT_LIMIT: u64 = if cfg!(target_pointer_width = "32") {

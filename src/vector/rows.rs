@@ -1,10 +1,10 @@
 //! Arrays over environments: a row for each.
 
+use super::Buffers;
+use super::layout::RowLayout;
 use crate::env::Observation;
 use crate::sensors::ObservationEntry;
 use crate::spaces::Array;
-use crate::vector::Buffers;
-use crate::vector::layout::RowLayout;
 
 /// The vector's own arrays.
 #[derive(Debug, Default)]

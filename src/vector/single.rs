@@ -1,11 +1,11 @@
 //! One environment of a vector.
 
+use super::slot::Slot;
+use super::{VectorEnv, VectorError, difference, of};
 use crate::config::FacialExpression;
 use crate::env::{Env, Info, Observation, Snapshot};
 use crate::mimo::{LockReport, LockTarget};
 use crate::spaces::{BoxSpace, ObservationSpace};
-use crate::vector::slot::Slot;
-use crate::vector::{VectorEnv, VectorError, difference, of};
 
 impl VectorEnv {
     /// Returns an environment.

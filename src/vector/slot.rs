@@ -3,11 +3,11 @@
 use std::any::Any;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
+use super::layout::RowLayout;
+use super::rows::VectorRows;
+use super::{AutoresetMode, make};
 use crate::env::{BehaviorInfo, Env, EnvError, Info, Observation, PerHand, ScratchUse, draw_eyes};
 use crate::threads::Job;
-use crate::vector::layout::RowLayout;
-use crate::vector::rows::VectorRows;
-use crate::vector::{AutoresetMode, make};
 
 /// The next command of an environment.
 #[derive(Clone, Copy, Debug)]

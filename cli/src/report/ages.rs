@@ -2,8 +2,8 @@
 
 use maud::html;
 
+use super::doll::{Doll, DollSide};
 use super::svg::embed;
-use crate::report::doll::{Doll, DollSide};
 use babybench::assets::AssetSource;
 use babybench::formats::png::{ColorType, png};
 use babybench::mimo::BodyFigures;

@@ -59,7 +59,7 @@ impl Blueprint {
     }
 
     /// Creates the renderer of an environment's eyes. The environments of the blueprint share its buffers.
-    pub(in crate::env) fn eyes_renderer(&self) -> Result<Renderer, EnvError> {
+    pub(crate) fn eyes_renderer(&self) -> Result<Renderer, EnvError> {
         match self.config.renderer {
             RendererKind::Cpu => Ok(Renderer::sharing(self.scenery()?, self.surface.painting.clone())),
             RendererKind::Wgpu => self.renderer(),

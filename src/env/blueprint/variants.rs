@@ -93,7 +93,7 @@ impl Blueprint {
 
     /// Returns the same blueprint with a model that a program has changed, without settling again. `changes` are the arrays that differ
     /// from those of the scene.
-    pub(in crate::env) fn with_model(
+    pub(crate) fn with_model(
         &self,
         model: Arc<Model>,
         params: Shared<Params>,

@@ -11,7 +11,7 @@ use crate::text::quoted;
 
 /// The identity of environments that can restore each other's snapshots.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(in crate::env) struct Identity {
+pub(crate) struct Identity {
     /// Checksum of everything that must be equal.
     pub fingerprint: u64,
     /// Keys of the configuration that differ from their defaults, a line each, for the error about a snapshot that does not match.

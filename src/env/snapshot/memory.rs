@@ -7,7 +7,7 @@ use crate::env::pipeline::{append_part, take_part};
 
 impl Env {
     /// Appends the memory of the action delay, pain and transforms, each part after its length.
-    pub(in crate::env) fn save_memory(&self, out: &mut Vec<u8>) {
+    pub(crate) fn save_memory(&self, out: &mut Vec<u8>) {
         let mut part = Vec::new();
         self.action_delay.save(&mut part);
         append_part(out, &mut part);
@@ -23,7 +23,7 @@ impl Env {
     }
 
     /// Restores what [`Env::save_memory`] wrote. Other data change nothing.
-    pub(in crate::env) fn load_memory(&mut self, bytes: &[u8]) -> Result<(), SnapshotError> {
+    pub(crate) fn load_memory(&mut self, bytes: &[u8]) -> Result<(), SnapshotError> {
         let mut before = Vec::new();
         self.save_memory(&mut before);
         if self.try_load(bytes) {

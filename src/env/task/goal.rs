@@ -42,7 +42,7 @@ pub struct GoalError {
 
 /// The goals of an environment.
 #[derive(Clone, Debug, Default)]
-pub(in crate::env) struct Goals {
+pub(crate) struct Goals {
     pub achieved: Vec<f64>,
     pub desired: Vec<f64>,
     pub terms: Vec<f64>,
@@ -67,12 +67,7 @@ impl Goals {
 }
 
 /// Computes the reward of each row of goals: see [`Blueprint::compute_reward`](crate::Blueprint::compute_reward).
-pub(in crate::env) fn rewards(
-    task: &dyn Task,
-    sizes: TaskSizes,
-    all: Goal<'_>,
-    out: &mut [f64],
-) -> Result<(), GoalError> {
+pub(crate) fn rewards(task: &dyn Task, sizes: TaskSizes, all: Goal<'_>, out: &mut [f64]) -> Result<(), GoalError> {
     let rows = out.len();
     let check = |what, values: &[f64], expected: usize| {
         let found = values.len();

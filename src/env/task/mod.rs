@@ -23,11 +23,11 @@ use std::fmt::Debug;
 
 pub use goal::{Goal, GoalError, Outcome};
 pub(super) use goal::{Goals, rewards};
-pub(in crate::env) use scene::{ActionTiming, StagedTask};
+pub(crate) use scene::{ActionTiming, StagedTask};
 pub use scene::{TaskScene, TaskView};
 
+use super::{EnvError, Info};
 use crate::config::{Behavior, Config};
-use crate::env::{EnvError, Info};
 use crate::mimo::{Version, scene_xml};
 use crate::model::Model;
 use crate::physics::State;

@@ -1,12 +1,12 @@
 //! The simulation, for a task to inspect and modify.
 
+use super::Goals;
 use crate::actuation::Actuation;
 use crate::config::{Compat, Config};
 use crate::env::action_delay::ActionDelay;
 use crate::env::engines::EngineSource;
 use crate::env::paths::Paths;
 use crate::env::physics::{EngineCall, LastEngineCall};
-use crate::env::task::Goals;
 use crate::env::{Env, EnvError, Task, check_vector};
 use crate::mimo::{LockTarget, held_posture, lock};
 use crate::model::Model;
@@ -16,7 +16,7 @@ use crate::spaces::NumpyRng;
 
 /// When an action is passed to the delay before the actuators.
 #[derive(Clone, Copy)]
-pub(in crate::env) enum ActionTiming {
+pub(crate) enum ActionTiming {
     InStep,
     /// At once, unless `compat: reference` delays actions of resets, too.
     InReset,
@@ -35,20 +35,20 @@ pub struct TaskScene<'a> {
     pub state: &'a mut State,
     /// The generator of the environment's random choices.
     pub rng: &'a mut NumpyRng,
-    pub(in crate::env) engine: EngineSource<'a>,
+    pub(crate) engine: EngineSource<'a>,
     /// Where calls of the engine are noted, if they are.
-    pub(in crate::env) last_call: Option<&'a mut LastEngineCall>,
+    pub(crate) last_call: Option<&'a mut LastEngineCall>,
     /// Parameters after a reset.
-    pub(in crate::env) base: &'a mut Shared<Params>,
-    pub(in crate::env) actuation: &'a dyn Actuation,
+    pub(crate) base: &'a mut Shared<Params>,
+    pub(crate) actuation: &'a dyn Actuation,
     /// Paths of bodies that the engine does not move; empty while the scene settles.
-    pub(in crate::env) paths: Option<&'a Paths>,
+    pub(crate) paths: Option<&'a Paths>,
     /// The delay before the actuators; none while the scene settles.
-    pub(in crate::env) delay: Option<&'a mut ActionDelay>,
+    pub(crate) delay: Option<&'a mut ActionDelay>,
     /// The start of episodes: positions and velocities.
-    pub(in crate::env) start: [&'a [f64]; 2],
+    pub(crate) start: [&'a [f64]; 2],
     /// A buffer for a random action.
-    pub(in crate::env) action: &'a mut Vec<f32>,
+    pub(crate) action: &'a mut Vec<f32>,
 }
 
 impl std::fmt::Debug for TaskScene<'_> {
@@ -79,7 +79,7 @@ impl std::fmt::Debug for TaskView<'_> {
 }
 
 /// The scene of an environment together with its task.
-pub(in crate::env) struct StagedTask<'a> {
+pub(crate) struct StagedTask<'a> {
     pub scene: TaskScene<'a>,
     pub task: &'a mut dyn Task,
     pub goals: &'a mut Goals,
@@ -88,7 +88,7 @@ pub(in crate::env) struct StagedTask<'a> {
 
 impl Env {
     /// Returns the scene together with its task.
-    pub(in crate::env) fn play(&mut self) -> StagedTask<'_> {
+    pub(crate) fn play(&mut self) -> StagedTask<'_> {
         let (engine, state, last_call, base) = self.physics.parts();
         let scene = TaskScene {
             config: self.blueprint.config(),
@@ -151,7 +151,7 @@ impl<'a> TaskScene<'a> {
     }
 
     /// Resets the state to `qpos0` at rest without computing anything from it. Actuators do not change.
-    pub(in crate::env) fn forget(&mut self) {
+    pub(crate) fn forget(&mut self) {
         if let Some(delay) = &mut self.delay {
             delay.clear();
         }
@@ -197,7 +197,7 @@ impl<'a> TaskScene<'a> {
     }
 
     /// Gives an action to the actuators, through the delay before them.
-    pub(in crate::env) fn set_action(&mut self, action: &[f32], passed: ActionTiming) {
+    pub(crate) fn set_action(&mut self, action: &[f32], passed: ActionTiming) {
         let action = match (&mut self.delay, passed) {
             (Some(delay), ActionTiming::InStep) => delay.pass(action, self.rng),
             (Some(delay), ActionTiming::InReset) => delay.pass_in_reset(action, self.rng),
@@ -207,7 +207,7 @@ impl<'a> TaskScene<'a> {
     }
 
     /// Makes physics steps, before each of which but the first the actuators are updated.
-    pub(in crate::env) fn advance(&mut self, steps: u32) -> Result<(), EnvError> {
+    pub(crate) fn advance(&mut self, steps: u32) -> Result<(), EnvError> {
         for k in 0..steps {
             if k > 0 {
                 self.actuation.substep(self.model, self.state);

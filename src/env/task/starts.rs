@@ -1,8 +1,8 @@
 //! Starts of episodes that tasks of the library have in common.
 
+use super::TaskScene;
 use crate::config::Compat;
 use crate::env::EnvError;
-use crate::env::task::TaskScene;
 
 /// Random actions at the start of an episode, of one physics step each.
 const RANDOM_ACTIONS: usize = 10;

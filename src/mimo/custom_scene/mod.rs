@@ -11,19 +11,19 @@ mod second_infant;
 mod unused;
 
 pub use error::CustomSceneError;
-pub(in crate::mimo) use second_infant::location;
+pub(crate) use second_infant::location;
 pub use unused::{UnusedAttribute, unused_attributes};
 
 use std::borrow::Cow;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+use super::document::{EXTRA_FILE, actuators, file_name, include};
+use super::embedded;
+use super::error::SceneError;
+use super::version::Version;
 use crate::assets::{AssetError, AssetSource, DirAssets, directory, resolve};
 use crate::config::{Config, Learner, Scene};
-use crate::mimo::document::{EXTRA_FILE, actuators, file_name, include};
-use crate::mimo::embedded;
-use crate::mimo::error::SceneError;
-use crate::mimo::version::Version;
 use crate::mjcf_loader::{ErrorKind, LoadError, Location};
 use extra::ExtraElements;
 

@@ -20,7 +20,7 @@ const NAMES: [&str; 12] = [
 const SHARED: [&str; 5] = ["looks", "classes_common", "classes_v1", "classes_v2", "settings"];
 
 /// Returns the body that places the learner in the world.
-pub(in crate::mimo) fn location(learner: Learner) -> &'static str {
+pub(crate) fn location(learner: Learner) -> &'static str {
     match learner {
         Learner::Mimo => MIMO,
         Learner::Other => LOCATION,

@@ -5,12 +5,7 @@ use crate::config::{Config, Key, KeyValue};
 
 /// Returns the error of an impossible body, with the measurements each of which alone is to blame: without it the body `works`. If there
 /// is none, it names all given measurements.
-pub(in crate::mimo) fn blame(
-    config: &Config,
-    age: f64,
-    reason: String,
-    works: impl Fn(&Config) -> bool,
-) -> GrowthError {
+pub(crate) fn blame(config: &Config, age: f64, reason: String, works: impl Fn(&Config) -> bool) -> GrowthError {
     let given: Vec<&Key> = measurements()
         .filter(|key| key.value(config) != KeyValue::None)
         .collect();

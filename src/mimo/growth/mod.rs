@@ -24,12 +24,12 @@ mod strength;
 
 use thiserror::Error;
 
+use super::error::SceneError;
+use super::sources::SourcedConstant;
+use super::{EYES, JOINT_PREFIX, ROOT, Version};
 use crate::assets::AssetSource;
 use crate::config::{Compat, Config, MAX_AGE, SpringModel, StrengthModel};
 use crate::math::Vec3;
-use crate::mimo::error::SceneError;
-use crate::mimo::sources::SourcedConstant;
-use crate::mimo::{EYES, JOINT_PREFIX, ROOT, Version};
 use crate::mjcf_loader::Draft;
 pub(super) use blame::blame;
 use lengths::Lengths;

@@ -2,17 +2,17 @@
 
 use std::collections::BTreeSet;
 
-use super::super::attached::{Reference, hanging};
-use super::super::attachment::{CopyCount, ElementKind, MissingReference};
-use super::super::compile::stem;
-use super::super::document::{Attach, Body, Document};
-use super::super::error::{ErrorKind, LoadError};
-use super::super::schema::Element;
-use super::super::table::Table;
-use super::super::xml::Tree;
 use super::insertion::Insertion;
 use super::keys::{resize_keys, say_keys};
+use crate::attached::{Reference, hanging};
+use crate::attachment::{CopyCount, ElementKind, MissingReference};
+use crate::compile::stem;
+use crate::document::{Attach, Body, Document};
+use crate::error::{ErrorKind, LoadError};
 use crate::math::order;
+use crate::schema::Element;
+use crate::table::Table;
+use crate::xml::Tree;
 
 const ABSENT: &str = "this refers to something that is not attached, by a name that another element of the document has, which MuJoCo 3.3.0 \
      may take for it: rename that, or attach the body that is meant";

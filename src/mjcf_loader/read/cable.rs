@@ -1,17 +1,17 @@
 //! `<composite type="cable">`: its bodies, joints, geoms, sites and excludes.
 
-use super::super::composite::{Composite, CompositeSkin, CompositeType, Link, Prototypes};
-use super::super::custom::Text;
-use super::super::document::{AutoBool, Body, Document, Orientation};
-use super::super::error::{ErrorKind, LoadError, UNREAD};
-use super::super::relation::Exclude;
-use super::super::schema::Element;
-use super::super::skin::{SKIN_ELEMENTS, Skin};
-use super::super::table::Table;
-use super::super::xml::Tree;
 use super::cable_skin::{self, SkinGrid};
 use super::insertion::Insertion;
+use crate::composite::{Composite, CompositeSkin, CompositeType, Link, Prototypes};
+use crate::custom::Text;
+use crate::document::{AutoBool, Body, Document, Orientation};
+use crate::error::{ErrorKind, LoadError, UNREAD};
 use crate::model::{GeomType, JointType};
+use crate::relation::Exclude;
+use crate::schema::Element;
+use crate::skin::{SKIN_ELEMENTS, Skin};
+use crate::table::Table;
+use crate::xml::Tree;
 
 const GONE: &str = "MuJoCo 3.3.0 makes only cables: write particles as <replicate>, ropes as type=\"cable\"; cloth, grids and loops are flexes";
 const LOST: &str = "MuJoCo 3.3.0 loses a composite in a <replicate> that is not in a body there: put a body around it";

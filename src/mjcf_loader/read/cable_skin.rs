@@ -1,8 +1,8 @@
 //! The skin of a cable of boxes: a band along its middle, which is blown up to their thickness.
 
-use super::super::composite::CompositeSkin;
-use super::super::skin::{Bone, Skin};
-use super::super::table::Table;
+use crate::composite::CompositeSkin;
+use crate::skin::{Bone, Skin};
+use crate::table::Table;
 
 /// Coefficients of 1, x, x^2 and x^3 by the values at 0 and 1 and the slopes there: a cubic between two points.
 const CUBIC: [[f64; 4]; 4] = [

@@ -1,14 +1,14 @@
 //! Contents of bodies: child bodies, frames, copies, and the elements that hang on them.
 
-use super::super::document::{Body, BodyFrame, Camera, Document, FreeJoint, Geom, Inertial, Joint, Light, Site};
-use super::super::error::{ErrorKind, LoadError, UNREAD};
-use super::super::schema::Element;
-use super::super::table::Table;
 use super::attach::attach_model;
 use super::cable::cable;
 use super::insertion::{Insertion, known};
 use super::{Classes, replicate, with};
+use crate::document::{Body, BodyFrame, Camera, Document, FreeJoint, Geom, Inertial, Joint, Light, Site};
+use crate::error::{ErrorKind, LoadError, UNREAD};
 use crate::model::JointType;
+use crate::schema::Element;
+use crate::table::Table;
 
 /// Reads the elements of a body or of a frame in it, and its child bodies depth first.
 pub(super) fn content(

@@ -1,8 +1,8 @@
 //! The place in the document at which elements are inserted, and their default class.
 
-use super::super::error::{ErrorKind, LoadError};
-use super::super::schema::Element;
 use super::Classes;
+use crate::error::{ErrorKind, LoadError};
+use crate::schema::Element;
 
 /// The body, and the frame in it, that new elements are inserted into.
 #[derive(Clone, Copy)]

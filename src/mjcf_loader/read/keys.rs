@@ -1,13 +1,13 @@
 //! Keyframes beside `<attach>` and `<replicate>`, as in MuJoCo 3.3.0: the joints, actuators and mocap bodies that exist at that time keep the
 //! values of a keyframe, and their copies take them along.
 
-use super::super::actuator::Actuator;
-use super::super::attached::{Sizes, na};
-use super::super::attachment::AttachedKeyframe;
-use super::super::custom::Key;
-use super::super::document::{Body, Document};
-use super::super::error::{ErrorKind, LoadError};
-use super::super::xml::Tree;
+use crate::actuator::Actuator;
+use crate::attached::{Sizes, na};
+use crate::attachment::AttachedKeyframe;
+use crate::custom::Key;
+use crate::document::{Body, Document};
+use crate::error::{ErrorKind, LoadError};
+use crate::xml::Tree;
 
 /// Distributes the values of the keyframes to the elements of the document. Returns the keyframes, with a prefix and a suffix on their names.
 ///
@@ -116,7 +116,7 @@ pub(super) fn resize_keys(document: &mut Document) {
 /// Returns the quaternions of mocap bodies. Orientations that are written in another way are not converted yet, in MuJoCo either, and count as
 /// none.
 fn body_quats(bodies: &[Body]) -> Vec<f64> {
-    use super::super::document::Orientation;
+    use crate::document::Orientation;
     let moved = bodies.iter().filter(|body| body.mocap);
     let quat = |body: &Body| match body.frame.orientation {
         Orientation::Quat(quat) => quat,

@@ -4,16 +4,16 @@
 //! bodies in it, with the number of the copy behind their names. Elements outside that refer to it by name are copied beside it, as far as
 //! all or, of some kinds, a part of what they refer to was copied; those that refer to the original go with it.
 
-use super::super::attached::{NameTable, Reference, hanging, said};
-use super::super::attachment::ElementKind;
-use super::super::document::{Body, BodyFrame, Document, Orientation, ReplicaIndex, Replicate};
-use super::super::error::{ErrorKind, LoadError};
-use super::super::schema::Element;
-use super::super::table::Table;
-use super::super::xml::Tree;
 use super::Classes;
 use super::insertion::{Insertion, known};
 use super::keys::{resize_keys, say_keys};
+use crate::attached::{NameTable, Reference, hanging, said};
+use crate::attachment::ElementKind;
+use crate::document::{Body, BodyFrame, Document, Orientation, ReplicaIndex, Replicate};
+use crate::error::{ErrorKind, LoadError};
+use crate::schema::Element;
+use crate::table::Table;
+use crate::xml::Tree;
 
 /// How many times as many elements as a document may have are looked at for copies: those that refer to others are for every copy again.
 const LOOKS: usize = 100;

@@ -1,10 +1,10 @@
 //! Elements that the rules allow have readers.
 
-use super::super::elements::MUJOCO;
-use super::super::schema::Rule;
 use super::*;
 use crate::assets::MemoryAssets;
+use crate::elements::MUJOCO;
 use crate::limits::Limits;
+use crate::schema::Rule;
 
 /// Returns the rule under a path of names from the root.
 fn rule(path: &[&str]) -> &'static Rule {

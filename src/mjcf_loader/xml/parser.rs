@@ -4,8 +4,8 @@ use quick_xml::XmlVersion;
 use quick_xml::events::{BytesStart, Event};
 use quick_xml::reader::Reader;
 
-use super::super::error::{ErrorKind, LoadError, Location};
 use super::{Node, Tree};
+use crate::error::{ErrorKind, LoadError, Location};
 
 /// Turns byte offsets, which only grow, into lines and columns.
 struct Cursor<'t> {

@@ -1,8 +1,7 @@
 //! Contact detection: sweep and prune along x, then the exact routines.
 
 use super::pairs::PairOrder;
-use super::{boxes, broad};
-use crate::collision::{GeomPair, PairTable};
+use super::{GeomPair, PairTable, boxes, broad};
 use crate::contact::{ContactOptions, ContactPoint, PlacedGeom, Scratch, bounding_test, collide};
 use crate::error::{EngineError, within};
 use crate::limits::Limits;

@@ -1,7 +1,7 @@
 //! Appends constraint rows: blocks, Jacobians, impedance.
 
-use crate::constraint::impedance::Impedance;
-use crate::constraint::{Block, ConeShape, ConstraintType, Efc, impedance};
+use super::impedance::Impedance;
+use super::{Block, ConeShape, ConstraintType, Efc, impedance};
 use crate::math::*;
 use crate::model::Model;
 use crate::state::State;

@@ -1,6 +1,6 @@
 //! Contacts with an elliptic friction cone: cost, force, curvature, slopes along a line.
 
-use crate::constraint::{Block, ConeShape, Efc};
+use super::{Block, ConeShape, Efc};
 
 /// The zone of a contact in the elliptic cone's cost: MuJoCo's top, bottom and middle zone.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]

@@ -1,6 +1,6 @@
 //! Directions of conjugate gradients (MuJoCo's solver `CG`).
 
-use crate::constraint::island::Island;
+use super::island::Island;
 use crate::dynamics::{Articulated, Damping};
 use crate::math::MINVAL;
 use crate::model::Model;

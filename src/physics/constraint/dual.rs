@@ -6,9 +6,9 @@
 
 use std::ops::Range;
 
-use crate::constraint::cone::FrictionCone;
-use crate::constraint::friction::Quadratic;
-use crate::constraint::{Block, ConeShape, ConstraintType, Efc};
+use super::cone::FrictionCone;
+use super::friction::Quadratic;
+use super::{Block, ConeShape, ConstraintType, Efc};
 use crate::dynamics::{Articulated, Damping, Four};
 use crate::error::EngineError;
 use crate::math::MINVAL;

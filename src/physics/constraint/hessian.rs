@@ -1,9 +1,9 @@
 //! The Hessian `M + J' C J` of an island: sparsity, assembly, factorisation.
 
-use crate::constraint::cone::ConeZone;
-use crate::constraint::island::Island;
-use crate::constraint::jacobian::Jacobian;
-use crate::constraint::{Efc, MAX_ROWS};
+use super::cone::ConeZone;
+use super::island::Island;
+use super::jacobian::Jacobian;
+use super::{Efc, MAX_ROWS};
 use crate::tiles::{
     Lanes, Pattern, Tile, ZERO, add_outer_products, factor_diagonal, scale_rows, solve, solve_columns,
     sub_transposed_product, sub_transposed_product_diagonal,

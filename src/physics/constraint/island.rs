@@ -1,9 +1,9 @@
 //! The problem of one island, in lanes: the cost, its force and its derivatives at a point.
 
-use crate::constraint::cone::{ConeZone, FrictionCone};
-use crate::constraint::jacobian::{Jacobian, SingleDofRow, add_transposed_product, product};
-use crate::constraint::scalar_rows::{NO_ROWS, NONE, ScalarRows};
-use crate::constraint::{Block, ConstraintType, Efc, MAX_ROWS};
+use super::cone::{ConeZone, FrictionCone};
+use super::jacobian::{Jacobian, SingleDofRow, add_transposed_product, product};
+use super::scalar_rows::{NO_ROWS, NONE, ScalarRows};
+use super::{Block, ConstraintType, Efc, MAX_ROWS};
 use crate::state::State;
 use crate::tiles::{Lanes, Pattern, Tile, mul, total};
 use crate::topology::Topology;

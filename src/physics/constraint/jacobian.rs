@@ -2,7 +2,7 @@
 
 use std::hint::black_box;
 
-use crate::constraint::Efc;
+use super::Efc;
 use crate::tiles::{Lanes, total};
 
 /// A row on one degree of freedom.

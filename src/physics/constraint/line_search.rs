@@ -1,6 +1,6 @@
 //! Exact search along a direction.
 
-use crate::constraint::island::Island;
+use super::island::Island;
 use crate::math::MINVAL;
 use crate::tiles::total;
 

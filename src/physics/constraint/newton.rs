@@ -2,12 +2,12 @@
 
 use std::ops::Range;
 
-use crate::constraint::cone::FrictionCone;
-use crate::constraint::conjugate::ConjugateGradient;
-use crate::constraint::hessian::Hessian;
-use crate::constraint::island::{AlongSearch, Island};
-use crate::constraint::line_search::LineSearch;
-use crate::constraint::{Block, ConstraintType, Efc};
+use super::cone::FrictionCone;
+use super::conjugate::ConjugateGradient;
+use super::hessian::Hessian;
+use super::island::{AlongSearch, Island};
+use super::line_search::LineSearch;
+use super::{Block, ConstraintType, Efc};
 use crate::dynamics::Articulated;
 use crate::math::MINVAL;
 use crate::model::{Model, SolverType};

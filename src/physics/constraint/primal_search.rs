@@ -4,7 +4,7 @@
 //! on which points it looked at, so models that allow few iterations are searched as MuJoCo 3.3.0 does it: Newton steps
 //! from zero until the slope changes its sign, then both ends of the bracket and its middle until one of them is flat.
 
-use crate::constraint::line_search::LineSearch;
+use super::line_search::LineSearch;
 use crate::math::MINVAL;
 
 /// A point on the line: step length, cost (up to a constant), and its first and second derivative.

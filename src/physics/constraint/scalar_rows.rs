@@ -1,6 +1,6 @@
 //! Constraint rows without a friction cone, four at a time.
 
-use crate::constraint::{Block, ConstraintType, Efc};
+use super::{Block, ConstraintType, Efc};
 use crate::tiles::{Lanes, total};
 
 /// No row.

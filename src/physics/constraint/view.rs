@@ -1,6 +1,6 @@
 //! Constraint rows as programs read them.
 
-use crate::constraint::{ConstraintType, Efc};
+use super::{ConstraintType, Efc};
 use crate::topology::Topology;
 
 /// A constraint row of the last step; the fields are MuJoCo's `efc_*`.

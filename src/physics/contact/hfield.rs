@@ -3,13 +3,11 @@
 use super::ccd_support::CcdSupport;
 use super::epa::epa;
 use super::fix_normal::fixed;
-use super::frame;
 use super::gjk::{GjkLimits, Simplex, gjk};
 use super::mesh::MeshShape;
-use super::mpr;
 use super::polytope::Polytope;
 use super::support::{Ball, Capsule, Cuboid, Cylinder, Ellipsoid, MinkowskiDifference, Point, Segment, Support};
-use super::{BIG, BareContact, ContactOptions, ContactPoint, PlacedGeom, add_scaled, dot, sub};
+use super::{BIG, BareContact, ContactOptions, ContactPoint, PlacedGeom, add_scaled, dot, frame, mpr, sub};
 use crate::math::{Mat3, Vec3, add, mat_mul, mat_t_vec, mat_vec, scale, transpose, unit};
 use crate::model::{GeomType, HField};
 

@@ -2,10 +2,9 @@
 
 use std::cell::Cell;
 
-use super::frame;
 use super::plane::push_point;
 use super::support::{Pose, Support};
-use super::{ContactPoint, PlacedGeom, dot, sub};
+use super::{ContactPoint, PlacedGeom, dot, frame, sub};
 use crate::math::{Vec3, add, mat_t_vec, mat_vec, norm, scale};
 use crate::model::{Mesh, MeshHull};
 

@@ -1,8 +1,7 @@
 //! The contacts of a convex pair: the deepest one, and with MuJoCo's `multiccd` more of them.
 
 use super::mesh::mesh_radius;
-use super::{BareContact, ContactOptions, ContactPoint, PlacedGeom, Scratch, faces, push, sub};
-use super::{ccd_support, convex};
+use super::{BareContact, ContactOptions, ContactPoint, PlacedGeom, Scratch, ccd_support, convex, faces, push, sub};
 use crate::math::{Mat3, Vec3, add, mat_mul, mat_vec, norm, quat_to_mat, scale, transpose, unit};
 use crate::mjcf_loader::bounding_radius;
 use crate::model::GeomType;

@@ -1,6 +1,6 @@
 //! Activations of actuators: their rates, and one step in time.
 
-use crate::dynamics::muscle;
+use super::muscle;
 use crate::math::MINVAL;
 use crate::model::{DynType, Model};
 

@@ -1,8 +1,8 @@
 //! From controls to joint forces and unconstrained acceleration.
 
-use crate::dynamics::applied::xfrc_accumulate;
-use crate::dynamics::articulated::{Articulated, Damping};
-use crate::dynamics::{activation, muscle, transmission};
+use super::applied::xfrc_accumulate;
+use super::articulated::{Articulated, Damping};
+use super::{activation, muscle, transmission};
 use crate::model::{BiasType, GainType, Model};
 use crate::state::State;
 use crate::topology::Topology;

@@ -4,7 +4,7 @@ mod four;
 
 use std::ops::Range;
 
-use crate::dynamics::CompositeInertia;
+use super::CompositeInertia;
 use crate::model::{Arrays, JointType};
 use crate::spatial::{Inertia, Spatial, axpy6, dot6};
 use crate::state::State;

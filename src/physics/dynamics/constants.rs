@@ -2,12 +2,12 @@
 
 use std::ops::Range;
 
+use super::kinematics::local_to_global;
+use super::springs::{bias, slack, springs};
+use super::stages::{com_pos, crb, kinematics, solve, update};
+use super::transmission::{dense_moment, length, transmissions};
+use super::{Articulated, CompositeInertia, tendons};
 use crate::MAXVAL;
-use crate::dynamics::kinematics::local_to_global;
-use crate::dynamics::springs::{bias, slack, springs};
-use crate::dynamics::stages::{com_pos, crb, kinematics, solve, update};
-use crate::dynamics::transmission::{dense_moment, length, transmissions};
-use crate::dynamics::{Articulated, CompositeInertia, tendons};
 use crate::math::*;
 use crate::model::{
     Arrays, CameraPose, Constants, EqualityKind, GeomType, JointType, Light, LightPose, SameFrame, Statistic, WeldPose,

@@ -1,10 +1,10 @@
 //! Derivatives of the smooth forces by the velocities, for the implicit integrators.
 
-use crate::dynamics::constants::is_simple;
-use crate::dynamics::ellipsoid::{swim_slopes, swims};
-use crate::dynamics::fluid::medium_slopes;
-use crate::dynamics::tree_matrix::TreeMatrix;
-use crate::dynamics::{muscle, transmission};
+use super::constants::is_simple;
+use super::ellipsoid::{swim_slopes, swims};
+use super::fluid::medium_slopes;
+use super::tree_matrix::TreeMatrix;
+use super::{muscle, transmission};
 use crate::math::*;
 use crate::model::{BiasType, GainType, IntegratorType, Model};
 use crate::spatial::*;

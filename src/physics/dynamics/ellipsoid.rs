@@ -3,8 +3,8 @@
 
 use std::f64::consts::PI;
 
-use crate::dynamics::applied::add_force;
-use crate::dynamics::tree_matrix::TreeMatrix;
+use super::applied::add_force;
+use super::tree_matrix::TreeMatrix;
 use crate::math::*;
 use crate::model::{GeomType, Model};
 use crate::spatial::*;

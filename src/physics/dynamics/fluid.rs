@@ -2,8 +2,8 @@
 
 use std::f64::consts::PI;
 
-use crate::dynamics::applied::add_force;
-use crate::dynamics::ellipsoid::{swim, swims};
+use super::applied::add_force;
+use super::ellipsoid::{swim, swims};
 use crate::math::*;
 use crate::model::Model;
 use crate::spatial::*;

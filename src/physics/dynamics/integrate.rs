@@ -1,9 +1,9 @@
 //! Integration: semi-implicit Euler with implicit joint damping, implicit methods, and Runge and Kutta's; activations of actuators.
 
-use crate::dynamics::activation;
-use crate::dynamics::articulated::{Articulated, Damping};
-use crate::dynamics::derivative::VelocityDerivative;
-use crate::dynamics::tree_matrix::TreeMatrix;
+use super::activation;
+use super::articulated::{Articulated, Damping};
+use super::derivative::VelocityDerivative;
+use super::tree_matrix::TreeMatrix;
 use crate::math::{axis_angle_to_quat, quat_at, quat_mul, quat_normalize, unit};
 use crate::model::{IntegratorType, Model};
 use crate::state::State;

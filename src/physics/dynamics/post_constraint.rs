@@ -1,8 +1,8 @@
 //! Body accelerations and internal wrenches after the constraint solver, which accelerometers and torque sensors read.
 
+use super::BiasScratch;
+use super::applied::applied;
 use crate::constraint::{ConstraintType, connected_points, weld_points};
-use crate::dynamics::BiasScratch;
-use crate::dynamics::applied::applied;
 use crate::math::*;
 use crate::model::{EqualityKind, Model};
 use crate::spatial::*;

@@ -1,8 +1,8 @@
 //! Parameters of springs and servos that follow from their rest configuration and the inertia at `qpos0`.
 
-use crate::dynamics::stages::{com_pos, kinematics};
-use crate::dynamics::tendons;
-use crate::dynamics::transmission::moment;
+use super::stages::{com_pos, kinematics};
+use super::tendons;
+use super::transmission::moment;
 use crate::math::MINVAL;
 use crate::model::Arrays;
 use crate::state::State;

@@ -1,6 +1,6 @@
 //! Tendons: their lengths, the Jacobians of these, and the points that spatial tendons pass.
 
-use crate::dynamics::wrap::{WrapShape, wrap};
+use super::wrap::{WrapShape, wrap};
 use crate::math::*;
 use crate::model::{Arrays, Wrap};
 use crate::spatial::{Spatial, angular, linear};

@@ -1,7 +1,7 @@
 //! Velocities, bias forces and passive forces.
 
-use crate::dynamics::fluid::{gravity_compensation, medium};
-use crate::dynamics::transmission;
+use super::fluid::{gravity_compensation, medium};
+use super::transmission;
 use crate::math::{quat_at, quat_normalize, rotation_between};
 use crate::model::{JointType, Model};
 use crate::spatial::*;

@@ -137,7 +137,7 @@ impl TrainingLog {
 
     /// Resumes a log as [`TrainingLog::resume`] does, with the names of the touched parts. If the log has no lines beside it, like the
     /// kit's logs, they are written while it is read.
-    pub(in crate::runs) fn resume_with(config: &Config, names: Option<PartNames>) -> Result<Self, LogError> {
+    pub(crate) fn resume_with(config: &Config, names: Option<PartNames>) -> Result<Self, LogError> {
         let path = training_path(&config.save_dir);
         let beside = path.with_extension("jsonl");
         // only if lines are missing beside a log are they all written, while its records are read anyway
@@ -194,7 +194,7 @@ impl TrainingLog {
     }
 
     /// Returns an error for the records of another task.
-    pub(in crate::runs) fn check_task(&self, task: &str) -> Result<(), LogError> {
+    pub(crate) fn check_task(&self, task: &str) -> Result<(), LogError> {
         let last = self.recent.back().and_then(|info| info.behavior.task());
         match last.filter(|last| *last.task != *task) {
             Some(last) => Err(LogError::Foreign {

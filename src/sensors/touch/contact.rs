@@ -1,10 +1,10 @@
 //! Contacts with skin, from the side of the body that is touched.
 
+use super::SkinLayout;
 use crate::config::Compat;
 use crate::math::*;
 use crate::model::Model;
 use crate::physics::Contact;
-use crate::sensors::touch::SkinLayout;
 
 /// Least normal force (N) of a contact that is felt.
 pub(crate) const MIN_FORCE: f64 = 1e-9;

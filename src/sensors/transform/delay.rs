@@ -5,7 +5,7 @@ use crate::sensors::{EyeImages, SkinValues};
 use crate::spaces::NumpyRng;
 
 /// Values that can wait in a delay.
-pub(in crate::sensors) trait DelayValues {
+pub(crate) trait DelayValues {
     /// Exchanges the values of two of the same size.
     fn exchange(&mut self, other: &mut Self);
     /// Takes over the values of another of the same size.

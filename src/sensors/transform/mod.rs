@@ -44,8 +44,8 @@ pub use foveation::Foveation;
 pub(crate) use hold::SampleHold;
 pub use noise::Noise;
 
+use super::{EyeImages, SkinValues};
 pub use crate::sensors::sense::Sense;
-use crate::sensors::{EyeImages, SkinValues};
 use crate::spaces::NumpyRng;
 
 /// The values of a sense in one step, to be changed in place.

@@ -202,3 +202,56 @@ fn names_behind_a_prefix_are_found_in_lists_and_paths() {
     let found: Vec<_> = named_behind(text, "crate::").into_iter().collect();
     assert_eq!(found, ["Env", "config", "env", "eval", "model"]);
 }
+
+/// Returns the path of a file's module in its crate.
+fn module_of(file: &Path, root: &Path) -> Vec<String> {
+    let inside = file.strip_prefix(root).expect("below its crate").with_extension("");
+    let mut path: Vec<String> = inside.iter().map(|part| part.to_string_lossy().into_owned()).collect();
+    path.pop_if(|last| ["mod", "lib", "main"].contains(&&**last));
+    path
+}
+
+#[test]
+fn paths_and_visibility_follow_the_rule_of_the_architecture() {
+    let home = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let crates = [
+        "src/physics/rapier",
+        "src/physics",
+        "src/mjcf_loader",
+        "src/render",
+        "src/model",
+        "engine/src",
+        "src",
+        "cli/src",
+    ];
+    let mut sources = Vec::new();
+    for folder in ["src", "engine/src", "cli/src"].map(|folder| home.join(folder)) {
+        files(&folder, &mut sources);
+    }
+    let mut wrong = Vec::new();
+    for file in &sources {
+        let code = code(file);
+        let root = crates
+            .iter()
+            .map(|folder| home.join(folder))
+            .find(|root| file.starts_with(root));
+        let module = module_of(file, &root.expect("it is in a crate"));
+        let parent = module.split_last().map_or(&[][..], |(_, parent)| parent);
+        let of_parent = format!("\nuse crate::{}::", parent.join("::"));
+        for (found, advice) in [
+            ("pub(in ", "pub(super) or pub(crate)"),
+            ("super::super::", "crate::"),
+            (&*of_parent, "super::"),
+        ] {
+            if code.contains(found) && (found != of_parent || !parent.is_empty()) {
+                wrong.push(format!(
+                    "{}: use {advice} instead of {:?}",
+                    file.display(),
+                    found.trim()
+                ));
+            }
+        }
+    }
+    assert!(sources.len() > 500, "only {} files were read", sources.len());
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}

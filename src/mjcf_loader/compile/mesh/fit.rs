@@ -4,7 +4,7 @@ use crate::math::{Vec3, add, norm, sub};
 use crate::model::{GeomType, Mesh};
 
 /// A primitive shape that is fitted to a mesh.
-pub(in crate::compile) struct FittedShape {
+pub(crate) struct FittedShape {
     /// Size, m.
     pub size: Vec3,
     /// The new position of the mesh, m.
@@ -12,7 +12,7 @@ pub(in crate::compile) struct FittedShape {
 }
 
 /// Fits a shape to a mesh: to the box with its inertia, or to the box around it; `None` for a shape that cannot be fitted.
-pub(in crate::compile) fn fit(kind: GeomType, mesh: &Mesh, to_bounds: bool, scale: f64) -> Option<FittedShape> {
+pub(crate) fn fit(kind: GeomType, mesh: &Mesh, to_bounds: bool, scale: f64) -> Option<FittedShape> {
     let (size, pos) = if to_bounds {
         let [low, high] = mesh.bounds;
         let centre: Vec3 = std::array::from_fn(|k| (low[k] + high[k]) / 2.0);

@@ -14,8 +14,8 @@ pub(super) use source::{indices, rows};
 
 use super::asset_name::asset_name;
 use super::context::{Context, Ids};
+use super::geometry::normalize;
 use crate::assets::AssetSource;
-use crate::compile::geometry::normalize;
 use crate::document::Document;
 use crate::error::LoadError;
 use crate::math::hull::quickhull;

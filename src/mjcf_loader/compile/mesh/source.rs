@@ -137,10 +137,7 @@ fn fill<T>(into: &mut Vec<T>, from: Vec<T>, twice: &'static str) -> Result<(), &
 }
 
 /// Returns numbers in rows of `N`, in single precision.
-pub(in super::super) fn rows<const N: usize>(
-    numbers: &[f64],
-    wrong: &'static str,
-) -> Result<Vec<[f32; N]>, &'static str> {
+pub(crate) fn rows<const N: usize>(numbers: &[f64], wrong: &'static str) -> Result<Vec<[f32; N]>, &'static str> {
     let (rows, rest) = numbers.as_chunks::<N>();
     if rest.is_empty() {
         Ok(rows.iter().map(|row| row.map(|x| x as f32)).collect())
@@ -150,7 +147,7 @@ pub(in super::super) fn rows<const N: usize>(
 }
 
 /// Returns the corners of triangles.
-pub(in super::super) fn indices(numbers: &[f64]) -> Result<Vec<[u32; 3]>, &'static str> {
+pub(crate) fn indices(numbers: &[f64]) -> Result<Vec<[u32; 3]>, &'static str> {
     let (rows, rest) = numbers.as_chunks::<3>();
     let index = |x: &f64| x.fract() == 0.0 && (0.0..f64::from(u32::MAX)).contains(x);
     if !rest.is_empty() || !numbers.iter().all(index) {

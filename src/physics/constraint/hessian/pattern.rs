@@ -1,13 +1,13 @@
 //! Which tiles of the Hessian of an island are not zero, and which rows are eliminated into which.
 
-use crate::constraint::hessian::{Hessian, NONE};
+use super::{Hessian, NONE};
 use crate::constraint::island::Island;
 use crate::tiles::ZERO;
 
 impl Hessian {
     /// Finds the pattern for an island.
     #[inline(always)]
-    pub(in crate::constraint) fn analyse(&mut self, island: &Island) {
+    pub(crate) fn analyse(&mut self, island: &Island) {
         let n = island.tiles();
         self.words = n.div_ceil(64);
         let words = self.words;

@@ -1,6 +1,6 @@
 //! Jacobians times curvatures.
 
-use crate::constraint::hessian::Hessian;
+use super::Hessian;
 use crate::tiles::Lanes;
 
 impl Hessian {

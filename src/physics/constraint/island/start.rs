@@ -1,7 +1,7 @@
 //! Where Newton's method starts.
 
+use super::Island;
 use crate::constraint::Efc;
-use crate::constraint::island::Island;
 use crate::tiles::{mul, total};
 use crate::topology::Topology;
 use crate::vectorize::vectorize;
@@ -10,12 +10,7 @@ impl Island {
     /// Starts at `qacc_warmstart` (nv) or at the acceleration without constraints, whichever costs less. Returns the cost and
     /// the length of its gradient.
     #[inline(always)]
-    pub(in crate::constraint) fn start(
-        &mut self,
-        topology: &Topology,
-        qacc_warmstart: &[f64],
-        efc: &Efc,
-    ) -> (f64, f64) {
+    pub(crate) fn start(&mut self, topology: &Topology, qacc_warmstart: &[f64], efc: &Efc) -> (f64, f64) {
         self.start_at(topology, qacc_warmstart, efc);
         let warm = self.evaluate();
         let length = self.differentiate(efc);

@@ -1,10 +1,10 @@
 //! New facets in the plane of their horizon, which are merged into it all together.
 
-use super::super::Builder;
-use super::super::parts::{
+use super::{FEW_VERTICES, MOST_MERGES};
+use crate::math::qhull::Builder;
+use crate::math::qhull::parts::{
     HullFailure, HullResult, Id, MergeReason, NONE, Ridge, TAIL, drop_sorted, drop_swapping, replace,
 };
-use super::{FEW_VERTICES, MOST_MERGES};
 
 impl Builder<'_> {
     /// Merges new facets without a plane of their own into their horizon (`qh_mergecycle_all`); returns whether there were any.

@@ -1,7 +1,7 @@
 //! Facets with too few neighbours, and facets whose vertices are all in a neighbour.
 
-use super::super::Builder;
-use super::super::parts::{HullFailure, HullResult, Id, Merge, MergeReason, NONE, drop_swapping};
+use crate::math::qhull::Builder;
+use crate::math::qhull::parts::{HullFailure, HullResult, Id, Merge, MergeReason, NONE, drop_swapping};
 
 impl Builder<'_> {
     /// Merges degenerate and redundant facets (`qh_merge_degenredundant`); returns whether there were any.

@@ -1,9 +1,11 @@
 //! The merge of one facet into another.
 
-use super::super::Builder;
-use super::super::parts::{HullFailure, HullResult, Id, MergeReason, NONE, Ridge, drop_sorted, drop_swapping, replace};
-use super::super::tolerance::{larger, smaller};
 use super::{FEW_VERTICES, MOST_MERGES, TOO_WIDE};
+use crate::math::qhull::Builder;
+use crate::math::qhull::parts::{
+    FORCED, HullFailure, HullResult, Id, MergeReason, NONE, Ridge, drop_sorted, drop_swapping, replace,
+};
+use crate::math::qhull::tolerance::{larger, smaller};
 
 impl Builder<'_> {
     /// Merges a facet into another (`qh_mergefacet`). The bounds are how far its vertices are from the other's plane.
@@ -92,7 +94,7 @@ impl Builder<'_> {
         }
         self.facets[facet].simplicial = false;
         let neighbors = self.facets[facet].neighbors.clone();
-        let forced = neighbors.contains(&super::super::parts::FORCED);
+        let forced = neighbors.contains(&FORCED);
         for &neighbor in &neighbors {
             self.facets[neighbor].seen = false;
         }
@@ -101,7 +103,7 @@ impl Builder<'_> {
             self.facets[other].seen = true;
         }
         for (i, &neighbor) in neighbors.iter().enumerate() {
-            if neighbor == super::super::parts::FORCED || self.facets[neighbor].seen {
+            if neighbor == FORCED || self.facets[neighbor].seen {
                 continue;
             }
             let mut vertices = self.facets[facet].vertices.clone();
@@ -124,7 +126,7 @@ impl Builder<'_> {
             self.add_ridge(neighbor, ridge);
         }
         if forced {
-            while drop_swapping(&mut self.facets[facet].neighbors, super::super::parts::FORCED) {}
+            while drop_swapping(&mut self.facets[facet].neighbors, FORCED) {}
         }
         Ok(())
     }

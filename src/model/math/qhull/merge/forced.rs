@@ -1,10 +1,10 @@
 //! Merges that must be: of facets at edges that more than two share, and of facets that point inwards.
 
-use super::super::Builder;
-use super::super::matching::WIDE;
-use super::super::parts::{FORCED, HullFailure, HullResult, Id, Merge, MergeReason};
-use super::super::plane::square_distance;
-use super::super::tolerance::larger;
+use crate::math::qhull::Builder;
+use crate::math::qhull::matching::WIDE;
+use crate::math::qhull::parts::{FORCED, HullFailure, HullResult, Id, Merge, MergeReason};
+use crate::math::qhull::plane::square_distance;
+use crate::math::qhull::tolerance::larger;
 
 /// How many greatest widths facets at a shared edge may be from each other (`qh_WIDEduplicate`).
 const TOO_FAR: f64 = 100.0;

@@ -1,7 +1,7 @@
 //! Vertices that merged facets no longer need.
 
-use super::super::Builder;
-use super::super::parts::{HullResult, Id, drop_sorted, drop_swapping};
+use crate::math::qhull::Builder;
+use crate::math::qhull::parts::{HullResult, Id, drop_sorted, drop_swapping};
 
 impl Builder<'_> {
     /// Removes vertices without edges, and those in two facets only, from merged facets (`qh_reducevertices`). Returns whether

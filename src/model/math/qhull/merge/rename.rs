@@ -1,8 +1,10 @@
 //! Replaces vertices by a neighbouring one.
 
-use super::super::Builder;
-use super::super::parts::{HullFailure, HullResult, Id, NONE, VertexMerge, drop_sorted, drop_swapping, push_unique};
 use crate::math::order;
+use crate::math::qhull::Builder;
+use crate::math::qhull::parts::{
+    HullFailure, HullResult, Id, MergeReason, NONE, TAIL, VertexMerge, drop_sorted, drop_swapping, push_unique,
+};
 
 /// How many greatest widths apart vertices may be that are merged (`qh_WIDEpinched`).
 const PINCHED: f64 = 100.0;
@@ -169,12 +171,12 @@ impl Builder<'_> {
             }
             drop_swapping(&mut self.facets[neighbor].neighbors, facet);
             if self.facets[neighbor].neighbors.len() < 3 {
-                self.note_merge(neighbor, neighbor, super::super::parts::MergeReason::Degenerate, 0.0)?;
+                self.note_merge(neighbor, neighbor, MergeReason::Degenerate, 0.0)?;
             }
             self.facets[facet].neighbors.swap_remove(i);
         }
         if self.facets[facet].neighbors.len() < 3 {
-            self.note_merge(facet, facet, super::super::parts::MergeReason::Degenerate, 0.0)?;
+            self.note_merge(facet, facet, MergeReason::Degenerate, 0.0)?;
         }
         Ok(())
     }
@@ -223,12 +225,12 @@ impl Builder<'_> {
     }
 
     /// Merges vertices that are so noted, after the point was added, until none is left (`qh_all_vertexmerges`).
-    pub(in super::super) fn merge_vertices(&mut self) -> HullResult {
+    pub(crate) fn merge_vertices(&mut self) -> HullResult {
         while !self.vertex_merges.is_empty() {
             self.check_pace()?;
             self.find_vertex_neighbors();
-            (self.visible_facets, self.new_facets) = (super::super::parts::TAIL, super::super::parts::TAIL);
-            self.new_vertices = super::super::parts::TAIL;
+            (self.visible_facets, self.new_facets) = (TAIL, TAIL);
+            self.new_vertices = TAIL;
             while let Some(VertexMerge { vertex, into, .. }) = self.next_vertex_merge()? {
                 self.rename_everywhere(vertex, into)?;
                 self.merge_degenerate()?;
@@ -297,7 +299,7 @@ impl Builder<'_> {
                 self.add_vertex(facet, into);
                 push_unique(&mut self.vertices[into].neighbors, facet);
                 self.renew_vertices(&self.facets[facet].vertices.clone())?;
-                if self.new_facets == super::super::parts::TAIL {
+                if self.new_facets == TAIL {
                     self.renew_facet(facet)?;
                     self.facets[facet].new = true;
                 }

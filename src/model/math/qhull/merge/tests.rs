@@ -1,8 +1,8 @@
 //! Tests of convexity.
 
-use super::super::Builder;
-use super::super::parts::{HullResult, Id, MergeReason, NONE};
 use crate::math::order;
+use crate::math::qhull::Builder;
+use crate::math::qhull::parts::{HullResult, Id, MergeReason, NONE};
 
 impl Builder<'_> {
     /// Tells whether all new facets are clearly convex, by their vertices (`qh_checkzero`). Then nothing is merged.
