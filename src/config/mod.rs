@@ -280,8 +280,11 @@ impl Config {
         }
         match self.conflict() {
             Some((key, value, reason)) => {
-                // A default that conflicts is nowhere in the file: the choice that excludes it is.
-                let location = location(position(key).or_else(|| position("compat")));
+                // a default that conflicts is nowhere in the file: the key that excludes it is, which the reason names in most cases
+                let named = reason.split('`').skip(1).step_by(2);
+                let excluding = named.filter_map(|words| position(words.split(':').next()?)).next();
+                let at = position(key).or(excluding).or_else(|| position("behavior"));
+                let location = location(at);
                 Err(ConfigError::Conflict {
                     location,
                     key,

@@ -31,6 +31,15 @@ fn compat_decides_which_touch_functions_exist() {
 }
 
 #[test]
+fn a_default_that_conflicts_is_blamed_on_the_key_that_excludes_it() {
+    check_error(
+        "seed: 1\nbehavior: mobile\nmobile_baseline: 0.95",
+        ":3:18: `mobile_extinction` is 0.2, but with `mobile_baseline` it is more than the whole episode; both are shares that \
+         add up to 1 at most",
+    );
+}
+
+#[test]
 fn compat_reference_refuses_what_the_reference_cannot_do() {
     let touch = "touch_function: force_vector\n";
     check_error(

@@ -271,10 +271,10 @@ impl Hessian {
         if self.child[i] == NONE {
             mine.fill(ZERO);
         } else {
-            // the last column of a child is this row, so the last row of its triangle is added here, the rest handed on
             // The assembly of the multifrontal method (Duff and Reid, "The multifrontal solution of indefinite sparse
             // symmetric linear equations", ACM Transactions on Mathematical Software 9, 1983): the updates of all
-            // children, added up, are all that eliminated rows do to this one and those below it.
+            // children, added up, are all that eliminated rows do to this one and those below it. The last column of a
+            // child is this row, so the last row of its triangle is added here, and the rest is handed on.
             let mut empty = true;
             while c != NONE as usize {
                 let child_cols = &self.pattern.cols(c)[..self.pattern.cols(c).len() - 1];

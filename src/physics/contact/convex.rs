@@ -6,7 +6,7 @@ use super::gjk::{GjkLimits, Simplex, gjk};
 use super::mesh::MeshShape;
 use super::polytope::Polytope;
 use super::support::{Ball, Capsule, Cuboid, Cylinder, Ellipsoid, MinkowskiDifference, Point, Segment, Support};
-use super::{BIG, BareContact, ContactOptions, PlacedGeom, add_scaled, column, dot, sub};
+use super::{BareContact, ContactOptions, MAXVAL, PlacedGeom, add_scaled, column, dot, sub};
 use crate::math::{Vec3, add, scale, unit};
 use crate::model::GeomType;
 
@@ -131,7 +131,7 @@ fn shallow<A: Support, B: Support>(
     if !outside {
         return CoreContact::Unknown;
     }
-    if closest.distance >= BIG {
+    if closest.distance >= MAXVAL {
         return CoreContact::Known(None);
     }
     let (towards, _) = unit(sub(closest.b, closest.a));

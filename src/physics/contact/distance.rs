@@ -5,7 +5,7 @@ use super::gjk::{GjkLimits, Simplex, gjk};
 use super::mesh::MeshShape;
 use super::polytope::Polytope;
 use super::support::{Ball, Capsule, Cuboid, Cylinder, Ellipsoid, MinkowskiDifference, Point, Segment, Support};
-use super::{BIG, ContactOptions, ContactPoint, PlacedGeom, Scratch, add_scaled, collide, sub};
+use super::{ContactOptions, ContactPoint, MAXVAL, PlacedGeom, Scratch, add_scaled, collide, sub};
 use crate::math::{Vec3, unit};
 use crate::model::GeomType;
 
@@ -137,7 +137,7 @@ impl DistanceSearch<'_, '_> {
         let (towards, _) = unit(sub(closest.b, closest.a));
         let dist = closest.distance - radius;
         GeomDistance {
-            dist: if dist > self.most { BIG } else { dist },
+            dist: if dist > self.most { MAXVAL } else { dist },
             from: add_scaled(closest.a, towards, radius),
             to: closest.b,
         }

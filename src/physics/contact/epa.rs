@@ -5,7 +5,7 @@ use super::gjk::Simplex;
 use super::nearest::{Projection, agree, combine3};
 use super::polytope::{Edge, MAX_FACES, Polytope, after};
 use super::support::{MinkowskiDifference, Support};
-use super::{BIG, dot, sub};
+use super::{MAXVAL, dot, sub};
 use crate::math::{MINVAL, Vec3, cross, mat_vec, norm, scale};
 
 /// Initial bound: the largest single-precision number.
@@ -104,7 +104,7 @@ impl<A: Support, B: Support> PolytopeExpansion<'_, A, B> {
         let edge = sub(q.point, p.point);
 
         // crossed with the axis most across the segment, since with one along it nothing would be left of the product
-        let mut smallest = BIG;
+        let mut smallest = MAXVAL;
         let mut axis = 0;
         for (k, component) in edge.iter().enumerate() {
             if component.abs() < smallest {

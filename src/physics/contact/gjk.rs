@@ -4,7 +4,7 @@
 
 use super::nearest::{segment_weights, tetrahedron_weights, triangle_weights};
 use super::support::{MinkowskiDifference, Support, Vertex};
-use super::{BIG, add_scaled, dot, sub};
+use super::{MAXVAL, add_scaled, dot, sub};
 use crate::math::{MINVAL, Vec3, cross, norm, scale};
 
 /// A simplex of up to four vertices of the Minkowski difference. Only the first `len` count.
@@ -17,7 +17,7 @@ pub(super) struct Simplex {
 /// The result of GJK.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct GjkResult {
-    /// Distance, m: 0 when the shapes overlap, [`BIG`] when they are known to be apart or beyond the cutoff.
+    /// Distance, m: 0 when the shapes overlap, [`MAXVAL`] when they are known to be apart or beyond the cutoff.
     pub(super) distance: f64,
     /// Nearest point of the first shape.
     pub(super) a: Vec3,
@@ -54,7 +54,7 @@ pub(super) fn gjk<A: Support, B: Support>(
         count: 0,
     };
     let apart = GjkResult {
-        distance: BIG,
+        distance: MAXVAL,
         a: centre_a,
         b: centre_b,
     };
@@ -194,7 +194,7 @@ impl GjkLimits {
         // root
         let overlap = dot(nearest, newest);
         let known = !self.wants_distance()
-            || self.cutoff < BIG && overlap * overlap / dot(nearest, nearest) >= self.cutoff * self.cutoff;
+            || self.cutoff < MAXVAL && overlap * overlap / dot(nearest, nearest) >= self.cutoff * self.cutoff;
         overlap > 0.0 && known
     }
 }
@@ -277,13 +277,13 @@ fn enclose_origin<A: Support, B: Support>(
             let (a, b, c) = (vertices[a].point, vertices[b].point, vertices[c].point);
             let normal = cross(sub(c, a), sub(b, a));
             let length2 = dot(normal, normal);
-            // a face without area, or too large to be squared, has no normal; at the distance BIG it is never the worst
-            if length2 > MINVAL * MINVAL && length2 < BIG * BIG {
+            // a face without area, or too large to be squared, has no normal; at the distance MAXVAL it is never the worst
+            if length2 > MINVAL * MINVAL && length2 < MAXVAL * MAXVAL {
                 normals[slot] = scale(normal, 1.0 / length2.sqrt());
                 distances[slot] = dot(normals[slot], a);
             } else {
                 normals[slot] = normal;
-                distances[slot] = BIG;
+                distances[slot] = MAXVAL;
             }
         }
         // the origin is in the plane of a face, and neither side of it

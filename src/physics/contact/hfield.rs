@@ -7,7 +7,7 @@ use super::gjk::{GjkLimits, Simplex, gjk};
 use super::mesh::MeshShape;
 use super::polytope::Polytope;
 use super::support::{Ball, Capsule, Cuboid, Cylinder, Ellipsoid, MinkowskiDifference, Point, Segment, Support};
-use super::{BIG, BareContact, ContactOptions, ContactPoint, PlacedGeom, add_scaled, dot, frame, mpr, sub};
+use super::{BareContact, ContactOptions, ContactPoint, MAXVAL, PlacedGeom, add_scaled, dot, frame, mpr, sub};
 use crate::math::{Mat3, Vec3, add, mat_mul, mat_t_vec, mat_vec, scale, transpose, unit};
 use crate::model::{GeomType, HField};
 
@@ -259,7 +259,7 @@ fn deepest(
         let closest = gjk(&shape, centre, other.pos, &limits(radius), &mut Simplex::default());
         if closest.distance > options.ccd_tolerance {
             let dist = closest.distance - radius;
-            if closest.distance >= BIG || dist >= 0.0 {
+            if closest.distance >= MAXVAL || dist >= 0.0 {
                 return None;
             }
             let towards = unit(sub(closest.b, closest.a)).0;

@@ -67,7 +67,7 @@ mod triangle;
 
 pub use distance::distance;
 
-use crate::MAXVAL as BIG;
+use crate::MAXVAL;
 use crate::math::{Mat3, Vec3, add_scaled, column, dot, sub};
 use crate::model::{GeomType, HField, Mesh};
 

@@ -2,7 +2,7 @@
 //! (Montanari, Petrinic and Barbieri, "Improving the GJK algorithm for faster and more reliable distance queries between
 //! convex objects", ACM Transactions on Graphics 36, 2017), in MuJoCo's arrangement.
 
-use super::{BIG, add_scaled, dot, sub};
+use super::{MAXVAL, add_scaled, dot, sub};
 use crate::math::{MINVAL, Vec3, cross, scale};
 
 /// Returns whether both numbers are positive or both negative.
@@ -132,7 +132,7 @@ pub(super) fn triangle_weights(a: Vec3, b: Vec3, c: Vec3) -> [f64; 3] {
     }
     // the edges opposite the corners that the foot is turned away from; the first one counts unseen
     let v = [a, b, c];
-    let mut least = BIG;
+    let mut least = MAXVAL;
     let mut weights = [0.0; 3];
     for (corner, (i, j)) in [(1, 2), (0, 2), (0, 1)].into_iter().enumerate() {
         if inside[corner] {
@@ -165,7 +165,7 @@ pub(super) fn tetrahedron_weights(v: [Vec3; 4]) -> [f64; 4] {
         return k.map(|part| part / volume);
     }
     // the faces opposite the corners that the origin is turned away from; the first one counts unseen
-    let mut least = BIG;
+    let mut least = MAXVAL;
     let mut weights = [0.0; 4];
     for (corner, [i, j, l]) in [[1, 2, 3], [0, 2, 3], [0, 1, 3], [0, 1, 2]].into_iter().enumerate() {
         if inside[corner] {
