@@ -175,9 +175,7 @@ fn anatomy(bench: &mut Bench, name: &str, config: &Config) {
     let mut reference = s.clone();
     let stages = Arc::new(Mutex::new(Stages::default()));
     let probe = stages.clone();
-    probed
-        .by_hand()
-        .set_probe(Some(Box::new(move |stage| lock(&probe).enter(stage))));
+    probed.set_probe(Some(Box::new(move |stage| lock(&probe).enter(stage))));
     let mut action = Vec::new();
     let mut samples: Vec<[f64; Stage::ALL.len()]> = Vec::new();
     let (mut base, mut whole, mut size) = (Vec::new(), Vec::new(), [0.0; 3]);

@@ -158,12 +158,12 @@ fn either_of_them_learns_at_an_age_of_his_own() {
 fn what_cannot_be_is_said() {
     let original = two(&plain(Behavior::SelfTouch));
     assert!(original.blueprint().second_infant().is_some());
-    assert!(env_alone(Behavior::SelfTouch).second_infant().is_none());
+    assert!(env_alone(Behavior::SelfTouch).blueprint().second_infant().is_none());
     let muscles = Config {
         actuation_model: ActuationModel::Muscle,
         ..plain(Behavior::SelfTouch)
     };
-    assert!(two(&muscles).second_infant().is_none());
+    assert!(two(&muscles).blueprint().second_infant().is_none());
     let servos = Config {
         actuation_model: ActuationModel::Positional,
         ..plain(Behavior::SelfTouch)

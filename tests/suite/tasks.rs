@@ -265,16 +265,16 @@ fn contacts_of_the_last_episode_do_not_count() {
     let mut env = task(Behavior::Catch);
     env.reset(Some(0)).expect("no divergence");
     let before = env.snapshot();
-    let contacts = |env: &Env| {
+    let contacts = |env: &mut Env| {
         let mut memory = Vec::new();
         env.by_hand().task().save(&mut memory);
         memory[5..105].to_vec()
     };
-    assert_eq!(contacts(&env), [0.0; 100]);
+    assert_eq!(contacts(&mut env), [0.0; 100]);
     course(&mut env, 20);
     env.reset(Some(0)).expect("no divergence");
     assert_eq!(env.snapshot().as_bytes().len(), before.as_bytes().len());
-    assert_eq!(contacts(&env), [0.0; 100]);
+    assert_eq!(contacts(&mut env), [0.0; 100]);
 }
 
 /// Without an action nothing is touched with the hand, whatever lies on the floor or on the body itself.
@@ -418,6 +418,7 @@ fn goals_of_a_wrong_shape_are_refused() {
         terms: &[0.0, 0.0],
     };
     let error = env
+        .blueprint()
         .compute_reward(goal, &mut [0.0; 2])
         .expect_err("too short")
         .to_string();

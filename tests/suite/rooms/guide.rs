@@ -37,7 +37,7 @@ fn the_chapter_of_the_guide_builds_a_room_that_runs_after_every_step() {
     assert_eq!((second.len(), yaml.len()), (1, 3));
     let two = steps[0].replace("</mujoco>", &format!("\n{}</mujoco>", second[0]));
     let pair = in_room(&config, &two).unwrap_or_else(|e| panic!("a second infant: {e}"));
-    assert!(pair.env().expect("valid").second_infant().is_some());
+    assert!(pair.env().expect("valid").blueprint().second_infant().is_some());
     for (text, body) in yaml[1..].iter().zip(["ball", "caregiver"]) {
         let added = Config {
             touch_active: false,

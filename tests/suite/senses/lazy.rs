@@ -108,7 +108,13 @@ fn a_picture_is_gone_when_the_scene_has_moved_on() {
     assert!(env.senses_mut().look().expect("a renderer").eye_left.is_some());
     let (qpos, qvel) = (env.state().qpos.clone(), env.state().qvel.clone());
     env.by_hand().set_state(&qpos, &qvel).expect("no divergence");
-    let picture = env.clone().look().expect("a renderer").eye_left.map(<[u8]>::to_vec);
+    let picture = env
+        .clone()
+        .senses_mut()
+        .look()
+        .expect("a renderer")
+        .eye_left
+        .map(<[u8]>::to_vec);
     env.model_mut()
         .change(|model| model.geom_size.iter_mut().for_each(|size| size[0] *= 1.1))
         .expect("they may change");

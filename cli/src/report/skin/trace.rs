@@ -83,7 +83,7 @@ fn lids(r: f64, half: f64, o: Vec3, d: Vec3) -> Hit {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use babybench::sensors::touch::points::surface_points;
+    use babybench::sensors::touch::surface_points;
     use babybench::spaces::NumpyRng;
 
     #[test]
