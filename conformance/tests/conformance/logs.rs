@@ -161,7 +161,7 @@ fn random_actions_score_as_the_references_do() {
     let seeds = 0..5;
     let score = |seed: u64| {
         let mut env = start_training(&blueprint, false).expect("a folder");
-        env.by_hand().seed_action_space(seed);
+        env.seed_action_space(seed);
         for _ in 0..20 {
             env.reset(None).expect("no divergence");
             steps(env.env_mut(), 1000, |_| {});
