@@ -183,7 +183,7 @@ config! {
         vision_outputs: VisionOutputs = VisionOutputs::default(), List(VisionOutput::NAMES), "The kinds of images of each eye that are observed.";
         vision_threads: u32 = 1, EYES, "Threads that draw both eyes of a single environment; 2 takes less wall time and gives the same bytes." + "Vectors have their own threads and draw each environment with one.";
         vision_rate: Option<f64> = None, RATE, "Pictures that each eye sees per second, Hz; none for one in each step." + "Between two pictures the last one is observed. Environments with different seeds see pictures in different steps.";
-        vision_lazy: bool = false, Bool, "Images are drawn only on request." + "Rust requests them with `Env::look`, Python with `env.eyes()`. All are drawn if a later image depends on each, through noise, a delay or a rate.";
+        vision_lazy: bool = false, Bool, "Images are drawn only on request." + "Rust requests them with `SensesMut::look`, Python with `env.eyes()`. All are drawn if a later image depends on each, through noise, a delay or a rate.";
         @group eyes: EyeOptions, "What the eyes see, how sharp, and where (`vision_width` ...).", "What the eyes see, how sharp, and where." {
             width as vision_width: Option<u32> = None, OWN_PIXELS, "The width of an eye's image, pixels; none for `vision_resolution`.";
             width_left as vision_width_left: Option<u32> = None, OWN_PIXELS, "The width of the left eye's image, pixels; none for `vision_width`.";

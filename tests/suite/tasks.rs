@@ -91,7 +91,7 @@ fn sizes_are_those_of_mimo() {
     }
 }
 
-/// Rewards of steps, and what [`Env::compute_reward`] makes of their rows afterwards, alone and at once; then with goals of other steps.
+/// Rewards of steps, and what [`Blueprint::compute_reward`] makes of their rows afterwards, alone and at once; then with goals of other steps.
 #[test]
 fn rewards_follow_from_goals_to_the_bit() {
     for behavior in TASKS {
