@@ -11,8 +11,9 @@ import re
 import subprocess
 import sys
 import tempfile
-import tomllib
 from collections.abc import Callable
+
+import tomllib
 
 OLD = "b62d939"
 PASSED_BY_AN_ACTION = {
@@ -73,7 +74,9 @@ class Tree:
         """Counts the public methods of a type, and the files that they are in."""
         found: dict[str, set[str]] = collections.defaultdict(set)
         for file in self.rust("src/"):
-            for block in re.findall(rf"^impl(?:<[^>]*>)? {name}(?:<[^>]*>)? \{{\n(.*?)^\}}", self.text(file), re.M | re.S):
+            for block in re.findall(
+                rf"^impl(?:<[^>]*>)? {name}(?:<[^>]*>)? \{{\n(.*?)^\}}", self.text(file), re.M | re.S
+            ):
                 for method in re.findall(r"^    pub (?:const )?fn (\w+)", block, re.M):
                     found[method].add(file)
         return len(found), len(set().union(*found.values()))
@@ -81,7 +84,11 @@ class Tree:
     def sense(self) -> int:
         """Counts the files that name one sense."""
         places = ("src/", "python/src/", "python/babybench_core/", "web/")
-        texts = (file for file in self.files if file.startswith(places) and file.endswith((".rs", ".py", ".pyi", ".js", ".ts", ".html")))
+        texts = (
+            file
+            for file in self.files
+            if file.startswith(places) and file.endswith((".rs", ".py", ".pyi", ".js", ".ts", ".html"))
+        )
         return sum(1 for file in texts if "touch_pooled" in self.text(file))
 
     def circles(self) -> tuple[int, int]:
@@ -92,7 +99,9 @@ class Tree:
     def repeated(self) -> int:
         """Counts the names of types that more than one type has."""
         declared = r"^(?:pub(?:\([a-z: ]*\))? )?(?:struct|enum|trait|type) ([A-Z]\w*)"
-        names = collections.Counter(name for file in self.rust("src/", "engine/") for name in re.findall(declared, self.text(file), re.M))
+        names = collections.Counter(
+            name for file in self.rust("src/", "engine/") for name in re.findall(declared, self.text(file), re.M)
+        )
         return sum(1 for uses in names.values() if uses > 1)
 
 
