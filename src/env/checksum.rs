@@ -1,7 +1,6 @@
 //! Checksums of what environments compute, to compare runs, builds and machines.
 
-use crate::Env;
-use crate::env::Observation;
+use super::{Env, Observation};
 use crate::spaces::Values;
 
 /// A checksum of numbers by their bits: FNV-1a on 64-bit words.
