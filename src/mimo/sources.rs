@@ -2,7 +2,7 @@
 
 use std::fmt::{self, Display, Formatter};
 
-use crate::mimo::growth::constants;
+use super::growth::constants;
 use crate::spaces::{INFANT_EXPONENT, INFANT_WEEKS};
 
 /// How sure a constant is.

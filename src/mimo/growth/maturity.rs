@@ -35,7 +35,7 @@ impl StrengthRow {
 
 /// The strength and the springs of a body, as factors on those of the original.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub(in crate::mimo) struct Maturity {
+pub(crate) struct Maturity {
     /// The greatest torques of actuators in the negative and in the positive direction, N m, and their factors on the original's.
     strength: BTreeMap<String, [Torque; 2]>,
     /// Factors on stiffness and damping of joints.
