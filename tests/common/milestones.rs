@@ -77,6 +77,7 @@ impl Puppet {
     fn pull(&mut self, actuator: &str, share: f64) {
         let env = &self.env;
         let place = env
+            .blueprint()
             .actuation()
             .actuators()
             .iter()
@@ -85,7 +86,7 @@ impl Puppet {
         match env.config().actuation_model {
             ActuationModel::SpringDamper => self.action[k] = share as f32,
             ActuationModel::Muscle => {
-                let n = env.actuation().actuators().len();
+                let n = env.blueprint().actuation().actuators().len();
                 self.action[k] = (-share).max(0.0) as f32;
                 self.action[n + k] = share.max(0.0) as f32;
             }
@@ -137,7 +138,10 @@ impl Puppet {
         qpos[root + 3..root + 7].copy_from_slice(&[1.0, 0.0, 0.0, 0.0]);
         // in the document he lies on his back
         self.hold(before, hip, 0.5 * PI);
-        self.env.set_state(&qpos, &vec![0.0; model.nv]).expect("a pose");
+        self.env
+            .by_hand()
+            .set_state(&qpos, &vec![0.0; model.nv])
+            .expect("a pose");
     }
 
     fn place(&self, body: &str) -> [f64; 3] {
@@ -191,7 +195,7 @@ pub fn prone_head_lift(config: &Config) -> f64 {
     let half = (0.25 * PI).sin();
     qpos[root + 2] += 0.02;
     qpos[root + 3..root + 7].copy_from_slice(&[half, 0.0, half, 0.0]);
-    mimo.env.set_state(&qpos, &qvel).expect("a pose");
+    mimo.env.by_hand().set_state(&qpos, &qvel).expect("a pose");
     let pitch = |mimo: &Puppet| {
         let head = mimo.env.model().body("head").expect("a head");
         // the face is along x of the head
