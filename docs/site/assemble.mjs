@@ -12,6 +12,7 @@ const ELSEWHERE = {
   "python/README.md": "python/index.md",
   "python/docs/from-the-kit.md": "python/from-the-kit.md",
   "python/docs/from-mimo.md": "python/from-mimo.md",
+  "python/docs/programs.md": "python/programs.md",
   "python/docs/mujoco.md": "python/mujoco.md",
   "python/docs/learners.md": "python/learners.md",
   "engine/README.md": "rust/engine.md",

@@ -36,8 +36,8 @@ impl<'a> ManualControl<'a> {
         Ok(env.observation())
     }
 
-    /// Recomputes poses, contacts, forces and senses from the current state, after [`Env::restore`] or changes through
-    /// [`Env::state_mut`], and returns the observation.
+    /// Recomputes poses, contacts, forces and senses from the current state, after [`Env::restore`](crate::env::Env::restore) or
+    /// changes through [`Env::state_mut`](crate::env::Env::state_mut), and returns the observation.
     ///
     /// The next step has the same bits as without this call: time, the start of the solver, the random generator and the memory of
     /// delays, pain and other transforms do not change. Nor do counters, reward and the end of the episode. After a step, poses and
@@ -58,8 +58,8 @@ impl<'a> ManualControl<'a> {
     /// ```
     ///
     /// # Errors
-    /// A state of wrong lengths, with numbers that are not finite, or from which the simulation diverges, after which [`Env::reset`] is
-    /// needed; errors of the renderer.
+    /// A state of wrong lengths, with numbers that are not finite, or from which the simulation diverges, after which
+    /// [`Env::reset`](crate::env::Env::reset) is needed; errors of the renderer.
     pub fn refresh(self) -> Result<Observation<'a>, EnvError> {
         let env = self.env;
         // the solver leaves its solution in the state as the start of the next one, so the original start is restored

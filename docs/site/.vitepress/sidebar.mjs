@@ -35,7 +35,7 @@ export const sidebar = [
   {
     text: "Ways in",
     items: [
-      ...items("python", { index: "Python", "from-the-kit": "From the starter kit", "from-mimo": "From MIMo", mujoco: "MuJoCo's names", learners: "Learners" }),
+      ...items("python", { index: "Python", "from-the-kit": "From the starter kit", "from-mimo": "From MIMo", programs: "Public programs", mujoco: "MuJoCo's names", learners: "Learners" }),
       ...items("guide", { rust: "Rust" }),
       ...items("rust", { engine: "The engine alone" }),
       ...items("guide", { cli: "The command line", web: "In the browser" }),
