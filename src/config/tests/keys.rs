@@ -170,6 +170,9 @@ fn every_key_takes_what_it_says_and_nothing_else() {
             let value = value.replace(">\n", ">-\n");
             let beside = match (key.section, name) {
                 ("Growth", "age") | ("Pain", "pain_active") => "",
+                ("Growth", name) if name.starts_with("strength_") && name != "strength_age" => {
+                    "age: 3\nstrength: infant\n"
+                }
                 // the other keys of growth change MIMo at an age
                 ("Growth", _) => "age: 3\n",
                 ("Pain", _) => "pain_active: true\n",
