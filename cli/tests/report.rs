@@ -229,7 +229,7 @@ fn what_comes_from_files_is_escaped() {
 
 #[test]
 fn logs_of_the_kit_have_a_report_too() {
-    let golden = Path::new(env!("CARGO_MANIFEST_DIR")).join("conformance/data/logs");
+    let golden = Path::new(env!("CARGO_MANIFEST_DIR")).join("../conformance/data/logs");
     for (log, about) in [
         ("self_touch_crib_random.pkl", "What the hands touched"),
         ("hand_regard_cubes_random.pkl", "right eye, right hand"),

@@ -39,7 +39,7 @@ impl Task for Small {
     fn document(&self, config: &Config) -> TaskDocument {
         TaskDocument {
             xml: include_str!("small.xml").to_string(),
-            touch_spacing: &[("hand", 0.04), ("target", 0.05)],
+            touch_spacing: vec![("hand".to_string(), 0.04), ("target".to_string(), 0.05)],
             ..TaskDocument::of(config)
         }
     }
