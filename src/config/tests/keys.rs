@@ -59,10 +59,12 @@ fn values(kind: KeyKind) -> Values {
             &["one", "true", "'1'", "none"],
             ["-1", "2000000", ".nan", ".inf"].map(String::from).into(),
         ),
-        KeyKind::NoneOr { .. } => (
-            ["none", "null", "~", "'none'", "1", "7.5", "1e1", "24"]
+        KeyKind::NoneOr { min, max } => (
+            ["none", "null", "~", "'none'", "1", "1.5", "1e1", "24"]
+                .into_iter()
+                .filter(|text| text.parse().map_or(true, |number: f64| (min..=max).contains(&number)))
                 .map(String::from)
-                .into(),
+                .collect(),
             &["one", "true", "'1'", "None"],
             ["-1", "2000000", ".nan"].map(String::from).into(),
         ),
@@ -176,6 +178,7 @@ fn every_key_takes_what_it_says_and_nothing_else() {
                 // the other keys of growth change MIMo at an age
                 ("Growth", _) => "age: 3\n",
                 ("Pain", _) => "pain_active: true\n",
+                (_, "noise_motor_color") => "noise_motor: 0.1\n",
                 // only rooms of one's own have a second infant
                 (_, "learner" | "other_age") => "scene: room.xml\n",
                 (_, "delay_by_age") => "age: 3\n",
