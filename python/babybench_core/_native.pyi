@@ -140,9 +140,9 @@ class Blueprint:
         config: Mapping[str, object] | str | os.PathLike[str],
         document: str | None = None,
         version: str = "v1",
-        folder: str | os.PathLike[str] = "",
+        folder: str | os.PathLike[str] = ...,
         files: Mapping[str, bytes] = ...,
-        touch_spacing: Sequence[tuple[str, float]] = (),
+        touch_spacing: Sequence[tuple[str, float]] = ...,
         assets: str | os.PathLike[str] | None = None,
     ) -> Blueprint:
         """Compiles a document, or without one the configuration's, for a program that puts resets and steps together.
