@@ -57,7 +57,12 @@ def plain(value: Any, depth: int = 0) -> Any:
 
 def attributes(thing: Any) -> dict[str, tuple[str, Any]]:
     """Returns type and value of each public attribute of an object."""
-    return {name: (type(getattr(thing, name)).__name__, plain(getattr(thing, name))) for name in public(thing)}
+    return {name: (kind(getattr(thing, name)), plain(getattr(thing, name))) for name in public(thing)}
+
+
+def kind(value: Any) -> str:
+    """Returns the name of a type; every array is one, also those that explain why they cannot be changed."""
+    return "ndarray" if isinstance(value, np.ndarray) else type(value).__name__
 
 
 def space(of: Any) -> Any:
