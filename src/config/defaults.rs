@@ -1,6 +1,7 @@
 //! Defaults of tasks, and their exclusions.
 
 use super::error::Conflict;
+use super::keys::Key;
 use super::table::KEYS;
 use super::{ActuationModel, Behavior, BodyParts, Compat, Config, Learner, Scene, TouchFunction, TouchResponse};
 use crate::text::quoted;
@@ -110,8 +111,20 @@ fn second_infant(config: &Config) -> Option<Conflict> {
     Some((key, value, reason.to_string()))
 }
 
+/// Returns a value that is calibrated on the body of MIMo 2 alone.
+fn other_body(config: &Config) -> Option<Conflict> {
+    let calibrated = ["strength", "springs", "proportions"];
+    let changed = |key: &&Key| calibrated.contains(&key.name) && key.value(config) != key.default_value();
+    let key = KEYS.iter().find(changed).filter(|_| config.mimo_version != 2)?;
+    let reason = "it is calibrated on the body of MIMo 2, whose chest has no joints; leave it or `mimo_version` out";
+    Some((key.name, key.value(config).to_yaml(), reason.to_string()))
+}
+
 /// Returns the first value that the task of a configuration excludes: key, value, and why.
 pub(super) fn conflict(config: &Config) -> Option<Conflict> {
+    if let Some(conflict) = other_body(config) {
+        return Some(conflict);
+    }
     if let Some(conflict) = second_infant(config) {
         return Some(conflict);
     }

@@ -23,6 +23,7 @@ const SCENE: KeyKind = KeyKind::ChoiceOrFile {
     names: Scene::NAMES,
     ending: Scene::ENDING,
 };
+const MIMO_VERSIONS: KeyKind = KeyKind::Whole { min: 2, max: 3 };
 const COUNT: KeyKind = whole_from_1_to(i64::MAX as u64); // steps and episodes are signed integers in numpy's logs
 const FRAMES: KeyKind = whole_from_1_to(10_000); // a step cannot be interrupted; these take about a second
 const PIXELS: KeyKind = whole_from_1_to(MAX_SIZE as u64);
@@ -78,6 +79,7 @@ config! {
     }
     "This implementation's own keys" {
         compat: Compat = Compat::Api, Choice(Compat::NAMES), "What to follow where the API page and the Python code disagree.";
+        mimo_version: u32 = 2, MIMO_VERSIONS, "MIMo's version: 2, or 3, whose chest is a body of its own with two joints.";
         engine: EngineKind = EngineKind::Soft, Choice(EngineKind::NAMES), "The physics engine.";
         renderer: RendererKind = RendererKind::Cpu, Choice(RendererKind::NAMES), "The renderer of images.";
         learner: Learner = Learner::Mimo, Choice(Learner::NAMES), "Which of two infants in a room learns: the one in `mimo_location` or in `other_location`.";

@@ -46,7 +46,7 @@ fn check_error(input: &str, expect: &str) {
 #[test]
 fn defaults_are_those_of_the_api_page() {
     let page = "save_dir=\"results/test_installation\" behavior=none scene=base max_episode_steps=1000 frame_skip=1 \
-                render_size=480 save_logs_every=1000 compat=api engine=soft renderer=cpu learner=mimo other_age=none scene_extra=\"\" mocap_motion=\"\" seed=0 facial_expression=default done_active=true action_penalty=true jitter=false position_inaccurate=false \
+                render_size=480 save_logs_every=1000 compat=api mimo_version=2 engine=soft renderer=cpu learner=mimo other_age=none scene_extra=\"\" mocap_motion=\"\" seed=0 facial_expression=default done_active=true action_penalty=true jitter=false position_inaccurate=false \
                 starting_position=supine mobile_limb=right_foot mobile_baseline=0.2 mobile_extinction=0.2 mobile_reward=false play_reward=false GROWTH DELAYS proprio_velocity=true \
                 proprio_torque=true proprio_limits=true proprio_actuation=true vestibular_active=true \
                 vision_active=true vision_resolution=64 vision_outputs=[rgb] vision_threads=1 vision_rate=none vision_lazy=false EYES touch_active=true touch_scale=1.0 touch_function=normal touch_rate=none \

@@ -48,7 +48,7 @@ const fn only_v2(name: &'static str, part: Part, touch_spacing: f64) -> BodyKind
 }
 
 /// Every body.
-const BODIES: [BodyKind; 30] = [
+const BODIES: [BodyKind; 31] = [
     both("toes", Part::Feet, 0.010),
     both("foot", Part::Feet, 0.015),
     both("lower_leg", Part::Legs, 0.038),
@@ -56,6 +56,7 @@ const BODIES: [BodyKind; 30] = [
     both("hip", Part::Body, 0.025),
     both("lower_body", Part::Body, 0.025),
     both("upper_body", Part::Body, 0.030),
+    both("chest", Part::Body, 0.030),
     both("head", Part::Head, 0.013),
     both("eye", Part::Eyes, 1.0),
     both("upper_arm", Part::Arms, 0.024),
@@ -90,9 +91,16 @@ mod tests {
     #[test]
     fn every_body_of_mimo_is_listed_and_only_those() {
         let mut found = Vec::new();
-        for (behavior, v2) in [(Behavior::SelfTouch, false), (Behavior::HandRegard, true)] {
+        let versions = [2, 3].map(|version| {
+            [
+                (Behavior::SelfTouch, false, version),
+                (Behavior::HandRegard, true, version),
+            ]
+        });
+        for (behavior, v2, mimo_version) in versions.into_iter().flatten() {
             let config = Config {
                 behavior,
+                mimo_version,
                 ..Config::default()
             };
             let model = build_model(&config, &embedded()).expect("a scene");

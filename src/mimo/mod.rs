@@ -14,6 +14,7 @@ mod placement;
 mod scene;
 mod sources;
 mod standards;
+mod third;
 mod version;
 
 pub use anatomy::{BodyKind, body_kind};
@@ -38,4 +39,7 @@ pub use placement::held_posture;
 pub use scene::{build_model, build_scene, strength_table};
 pub use sources::{Mark, SourcedConstant};
 pub use standards::{GrowthStandard, Lms};
+pub(crate) use third::CHEST;
+#[cfg(feature = "eval")]
+pub(crate) use third::VersionAssets;
 pub use version::{EYES, Version};

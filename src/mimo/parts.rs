@@ -116,7 +116,7 @@ impl MimoJoints {
         MimoBodies::of(model).joints()
     }
 
-    /// Returns the number of joints: 47 for version 1, 91 for version 2.
+    /// Returns the number of joints: 47 for v1, 91 for v2, and two more for MIMo 3.
     pub fn len(&self) -> usize {
         self.joint.len()
     }

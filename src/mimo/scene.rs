@@ -5,6 +5,7 @@ use super::document::{document_path, scene_xml};
 use super::error::SceneError;
 use super::growth::blame;
 use super::placement::{GeomOverlap, LowestPoint, overlaps};
+use super::third::VersionAssets;
 use super::version::{EYES, SECOND_PREFIX, Version};
 use super::{Growth, StrengthRow};
 use crate::assets::AssetSource;
@@ -41,6 +42,7 @@ pub fn build_scene(
     assets: &dyn AssetSource,
 ) -> Result<Model, SceneError> {
     let path = document_path(config);
+    let assets = &VersionAssets::new(config, assets);
     let Some(room) = CustomScene::open(config, assets)? else {
         return SceneSource::of(config, document, path, assets).build(version, config);
     };

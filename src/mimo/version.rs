@@ -1,6 +1,7 @@
 //! The versions of MIMo, and names that both share.
 
-use crate::config::Behavior;
+use super::third::CHEST;
+use crate::config::{Behavior, Config};
 
 /// Prefix of the names of the second infant's parts.
 pub(crate) const SECOND_PREFIX: &str = "other:";
@@ -14,9 +15,9 @@ pub const EYES: [&str; 2] = ["eye_left", "eye_right"];
 /// A version of MIMo.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Version {
-    /// MIMo with mitten hands and simple feet: 47 joints.
+    /// MIMo with mitten hands and simple feet: 47 joints, and 49 with the chest of MIMo 3.
     V1,
-    /// MIMo with five-fingered hands and big toes: 91 joints.
+    /// MIMo with five-fingered hands and big toes: 91 joints, and 93 with the chest of MIMo 3.
     V2,
 }
 
@@ -32,6 +33,23 @@ impl Version {
             | Behavior::SelfBody
             | Behavior::RollOver
             | Behavior::Mobile => Self::V1,
+        }
+    }
+
+    /// Returns the name of the body of a configuration after "MIMo": `v1`, `v2`, or with the chest of MIMo 3 `3 v1`, `3 v2`.
+    ///
+    /// ```
+    /// use babybench::Config;
+    /// use babybench::mimo::Version;
+    ///
+    /// assert_eq!(Version::label(&Config::default()), "v1");
+    /// assert_eq!(Version::label(&Config { mimo_version: 3, ..Config::default() }), "3 v1");
+    /// ```
+    pub fn label(config: &Config) -> &'static str {
+        match (Self::of(config.behavior), config.mimo_version) {
+            (Self::V1, CHEST) => "3 v1",
+            (Self::V2, CHEST) => "3 v2",
+            (version, _) => version.name(),
         }
     }
 

@@ -15,7 +15,9 @@ use crate::config::{Compat, Config, ConfigError};
 use crate::env::Blueprint;
 use crate::files::{self, replace_file};
 use crate::limits::Limits;
-use crate::mimo::{CustomSceneError, Version, document_path, embedded, has_own_scene, open_custom_scene, scene_xml};
+use crate::mimo::{
+    CustomSceneError, Version, VersionAssets, document_path, embedded, has_own_scene, open_custom_scene, scene_xml,
+};
 use crate::mjcf_loader::{LoadError, load};
 use crate::model::Model;
 use crate::physics::compile;
@@ -89,8 +91,9 @@ pub fn complete_scene(config: &Config) -> Result<SceneFile, SceneFileError> {
 /// # Errors
 /// Assets that are missing or not XML.
 pub fn complete_scene_from(config: &Config, assets: &dyn AssetSource) -> Result<SceneFile, SceneFileError> {
-    let room = open_custom_scene(config, assets)?;
-    complete_document(&scene_xml(config), config, room.as_ref().map_or(assets, |room| room))
+    let assets = VersionAssets::new(config, assets);
+    let room = open_custom_scene(config, &assets)?;
+    complete_document(&scene_xml(config), config, room.as_ref().map_or(&assets, |room| room))
 }
 
 /// Writes a document of a configuration as one document.
@@ -187,7 +190,7 @@ fn same_ids(a: &Model, b: &Model) -> bool {
 
 /// Describes what decides the ids of a scene: the scene and the version of MIMo.
 fn about(config: &Config) -> String {
-    let version = Version::of(config.behavior).name();
+    let version = Version::label(config);
     if has_own_scene(config.behavior) {
         format!("the task {} with MIMo {version}", config.behavior)
     } else {

@@ -267,6 +267,7 @@ fn no_key_is_without_effect() {
             "behavior" => &["self_touch", "hand_regard"],
             "scene" => &["crib", "cubes"],
             "scene_extra" => &["<body pos='0 0 1'><freejoint/><geom size='0.1'/></body>"],
+            "mimo_version" => &["3"],
             "actuation_model" => &["muscle", "positional"],
             "compat" => &["reference"],
             "max_episode_steps" => &["7"],

@@ -21,6 +21,7 @@ mod json;
 #[cfg(all(feature = "eval", feature = "npz"))]
 mod logs;
 mod milestones;
+mod mimo3;
 mod model_change;
 #[cfg(all(feature = "eval", feature = "npz"))]
 mod motion;

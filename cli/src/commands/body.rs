@@ -90,7 +90,7 @@ pub fn write(out: &mut impl Write, env: &Env, age: f64) -> io::Result<()> {
     };
     let version = Version::of(config.behavior);
     let strength_age = config.strength_age.unwrap_or(age);
-    writeln!(out, "\nMIMo {} at {age} months", version.name())?;
+    writeln!(out, "\nMIMo {} at {age} months", Version::label(config))?;
     let (here, there) = ("here", "by the authors' formulas (arXiv 2509.09805)");
     writeln!(out, "  {:27} {here:>9}  {there}", "")?;
     let mut line = |what: &str, value: f64, age: f64, row: Option<&Row>, unit: &str| {

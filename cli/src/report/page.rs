@@ -131,7 +131,7 @@ pub(super) fn page(run: &mut RunContents) -> String {
 
 fn header(run: &RunContents) -> Markup {
     let about = run.config.as_ref().map(|c| {
-        let version = Version::of(c.behavior).name();
+        let version = Version::label(c);
         format!(
             "MIMo {version} · {} · compat: {}",
             c.actuation_model.name().replace('_', " "),

@@ -24,6 +24,7 @@ mod live_one_step;
 mod live_rollout;
 mod logs;
 mod meanings;
+mod mimo3;
 mod mutations;
 mod rapier_engine;
 mod recordings;
@@ -67,6 +68,7 @@ fn main() -> ExitCode {
         logs::trials(),
         composed::trials(),
         meanings::trials(),
+        mimo3::trials(),
         mutations::trials(),
         rapier_engine::trials(),
         recordings::trials(),

@@ -3,11 +3,12 @@
 use super::pose::free_address;
 use super::scene::{TaskScene, TaskView};
 use super::starts::relax;
-use super::tracking::HeadTracking;
+use super::tracking::{ForgottenJoints, HeadTracking};
 use super::{Goal, StepReward, Task, TaskDocument, TaskSizes, body, spacing};
 use crate::config::{Compat, Config};
 use crate::env::EnvError;
 use crate::math::{Vec3, add, norm, sub};
+use crate::mimo::CHEST;
 use crate::model::Model;
 use crate::physics::{FreeBody, State};
 use crate::sensors::touch::MIN_FORCE;
@@ -65,6 +66,9 @@ const TOUCH: &[(&str, f64)] = &[
 /// on success and -100 on failure: the ball is 10 cm below the hand or 50 cm from it. Terms: contact, cost, success, failure. The radius
 /// of the ball is the last entry of proprioception.
 ///
+/// MIMo 3 moves his arm, too. Without contact his reward is 0.5 m minus the distance of the ball from his hand, from -0.5 to 0.5, and the
+/// distance is a fifth term. Under `compat: reference` his actions cost nothing.
+///
 /// Under `compat: reference` the ball starts in one place, contacts of the last episode count for success, and muscles are not
 /// updated while the arm settles.
 #[derive(Clone, Debug, Default)]
@@ -79,6 +83,8 @@ pub(super) struct Catch {
     jitter: bool,
     inaccurate: bool,
     penalty: bool,
+    /// Whether MIMo is version 3.
+    third: bool,
     reference: bool,
     memory: CatchMemory,
 }
@@ -215,13 +221,15 @@ impl Task for Catch {
             .collect::<Result<Vec<_>, _>>()?;
         self.own = model.geom_bodyid.iter().map(|b| skin.contains(b)).collect();
         self.reference = config.compat == Compat::Reference;
-        self.head = HeadTracking::new(model, false, PURPOSE)?;
+        self.head = HeadTracking::new(model, ForgottenJoints::None, PURPOSE)?;
         (self.jitter, self.inaccurate) = (config.catch.jitter, config.catch.position_inaccurate);
-        self.penalty = config.catch.action_penalty;
+        self.third = config.mimo_version == CHEST;
+        // MIMo 3's Python code computes the penalty and does not use it
+        self.penalty = config.catch.action_penalty && !(self.third && self.reference);
         self.memory.factors = vec![1.0; if self.jitter { 2 * model.nu() } else { 0 }];
         Ok(TaskSizes {
             goal: 0,
-            terms: 4,
+            terms: if self.third { 5 } else { 4 },
             observation: 1,
         })
     }
@@ -287,18 +295,27 @@ impl Task for Catch {
             0.0
         };
         let (ball, hand) = (view.state.xpos[self.target], view.state.xpos[self.hand]);
+        let distance = norm(sub(ball, hand));
         // below the hand or far from it: he cannot catch it any more
-        let lost = ball[2] < hand[2] - LOST[0] || norm(sub(ball, hand)) > LOST[1];
+        let lost = ball[2] < hand[2] - LOST[0] || distance > LOST[1];
         let contact = self.memory.past[self.memory.now()];
-        terms.copy_from_slice(&[flag(contact), cost, flag(held), flag(lost)]);
+        let found = [flag(contact), cost, flag(held), flag(lost), distance];
+        terms.copy_from_slice(&found[..terms.len()]);
     }
 
     fn judge(&self, goal: Goal<'_>) -> StepReward {
-        let &[contact, cost, held, lost] = goal.terms else {
+        let (&[contact, cost, held, lost], distance) = (match goal.terms {
+            [terms @ .., distance] if self.third => (terms, Some(distance)),
+            terms => (terms, None),
+        }) else {
             return StepReward::default();
         };
+        let near = match distance {
+            Some(distance) if contact == 0.0 => (LOST[1] - distance).clamp(-LOST[1], LOST[1]),
+            _ => contact,
+        };
         StepReward {
-            reward: contact - COST * cost - BONUS * lost + BONUS * held,
+            reward: near - COST * cost - BONUS * lost + BONUS * held,
             is_success: held > 0.0,
             is_failure: lost > 0.0,
         }

@@ -3,11 +3,12 @@
 use super::pose::free_address;
 use super::scene::{TaskScene, TaskView};
 use super::starts::random_start;
-use super::tracking::HeadTracking;
+use super::tracking::{ForgottenJoints, HeadTracking};
 use super::{Goal, StepReward, Task, TaskSizes, body};
 use crate::config::{Compat, Config};
 use crate::env::EnvError;
 use crate::math::{Vec3, norm, sub};
+use crate::mimo::CHEST;
 use crate::model::Model;
 
 const PURPOSE: &str = "behavior reach";
@@ -51,7 +52,12 @@ impl Task for Reach {
         self.target = body(model, "target", PURPOSE)?;
         self.ball = free_address(model, self.target, PURPOSE)?;
         self.has_goals = config.compat == Compat::Api;
-        self.head = HeadTracking::new(model, !self.has_goals, PURPOSE)?;
+        let forgotten = match (config.compat, config.mimo_version) {
+            (Compat::Api, _) => ForgottenJoints::None,
+            (Compat::Reference, CHEST) => ForgottenJoints::RightEye,
+            (Compat::Reference, _) => ForgottenJoints::LeftTorsion,
+        };
+        self.head = HeadTracking::new(model, forgotten, PURPOSE)?;
         Ok(TaskSizes {
             goal: if self.has_goals { 3 } else { 0 },
             terms: 2,

@@ -8,6 +8,7 @@ use crate::env::engines::EngineSource;
 use crate::env::paths::Paths;
 use crate::env::physics::{EngineCall, LastEngineCall};
 use crate::env::{Env, EnvError, Task, check_vector};
+use crate::mimo::CHEST;
 use crate::mimo::{LockTarget, held_posture, lock};
 use crate::model::Model;
 use crate::physics::{Engine, Params, Shared, State};
@@ -206,10 +207,12 @@ impl<'a> TaskScene<'a> {
         self.actuation.set_action(self.model, self.state, action);
     }
 
-    /// Makes physics steps, before each of which but the first the actuators are updated.
+    /// Makes physics steps, before each of which but the first the actuators are updated. Those of MIMo 3 are updated before the first,
+    /// too, under `compat: reference`.
     pub(crate) fn advance(&mut self, steps: u32) -> Result<(), EnvError> {
+        let first = u32::from(self.config.mimo_version < CHEST || self.config.compat == Compat::Api);
         for k in 0..steps {
-            if k > 0 {
+            if k >= first {
                 self.actuation.substep(self.model, self.state);
             }
             self.steps(1)?;

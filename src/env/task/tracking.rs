@@ -20,32 +20,47 @@ pub(super) struct HeadTracking {
     head: usize,
     swivel: usize,
     tilt: usize,
-    /// Horizontal angles of the left and of the right eye.
-    eyes: [usize; 2],
+    /// Horizontal angles of the eyes that follow.
+    eyes: Vec<usize>,
     /// Joints that are held at 0.
     straight: Vec<usize>,
+    /// Whether the distance of the point is that from the height of the eyes.
+    from_eyes: bool,
+}
+
+/// The joints of the eyes that the Python code forgets.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum ForgottenJoints {
+    /// None.
+    None,
+    /// The left eye rolls freely: MIMo 2's task `reach`.
+    LeftTorsion,
+    /// The right eye looks ahead and is free otherwise, and distances are those from the height of the eyes: MIMo 3's task `reach`.
+    RightEye,
 }
 
 impl HeadTracking {
-    /// Finds the joints. Under `compat: reference` with `forgets_torsion` the left eye rolls freely, as in the Python code.
-    pub fn new(model: &Model, forgets_torsion: bool, purpose: &'static str) -> Result<Self, EnvError> {
+    /// Finds the joints.
+    pub fn new(model: &Model, forgotten: ForgottenJoints, purpose: &'static str) -> Result<Self, EnvError> {
         let at = |name: &str| address(model, &own_joint(name), purpose);
-        let straight = [
-            "head_tilt_side",
-            "left_eye_vertical",
-            "left_eye_torsional",
-            "right_eye_vertical",
-            "right_eye_torsional",
+        let both: [&str; 2] = ["left_eye_horizontal", "right_eye_horizontal"];
+        let [left, right] = [
+            ["left_eye_vertical", "left_eye_torsional"],
+            ["right_eye_vertical", "right_eye_torsional"],
         ];
-        let held = straight
-            .iter()
-            .filter(|name| !(forgets_torsion && **name == "left_eye_torsional"));
+        let (following, held) = match forgotten {
+            ForgottenJoints::None => (&both[..], [left, right].concat()),
+            ForgottenJoints::LeftTorsion => (&both[..], [&left[..1], &right[..]].concat()),
+            ForgottenJoints::RightEye => (&both[..1], [&left[..], &both[1..]].concat()),
+        };
+        let held = std::iter::once("head_tilt_side").chain(held);
         Ok(Self {
             head: super::body(model, "head", purpose)?,
             swivel: at("head_swivel")?,
             tilt: at("head_tilt")?,
-            eyes: [at("left_eye_horizontal")?, at("right_eye_horizontal")?],
-            straight: held.map(|name| at(name)).collect::<Result<_, _>>()?,
+            eyes: following.iter().map(|name| at(name)).collect::<Result<_, _>>()?,
+            from_eyes: forgotten == ForgottenJoints::RightEye,
+            straight: held.map(at).collect::<Result<_, _>>()?,
         })
     }
 
@@ -54,8 +69,8 @@ impl HeadTracking {
     /// Under `compat: reference` the head turns the wrong way from a point behind it.
     pub fn look_at(&self, scene: &mut TaskScene<'_>, point: Vec3) {
         let [x, y, z] = sub(point, scene.state.xpos[self.head]);
-        let eyes = norm([x, y, z]) - EYE_FORWARD;
         let up = z - EYE_HEIGHT;
+        let eyes = norm([x, y, if self.from_eyes { up } else { z }]) - EYE_FORWARD;
         let [swivel, tilt] = if scene.config.compat == Compat::Reference {
             [pxfm::f_atan(y / x), pxfm::f_atan(-up / x)]
         } else {
@@ -63,7 +78,7 @@ impl HeadTracking {
         };
         let qpos = &mut scene.state.qpos;
         (qpos[self.swivel], qpos[self.tilt]) = (swivel, tilt);
-        for eye in self.eyes {
+        for &eye in &self.eyes {
             qpos[eye] = pxfm::f_atan(-EYE_SIDEWARD / eyes);
         }
         for &joint in &self.straight {

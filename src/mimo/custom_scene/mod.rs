@@ -21,8 +21,9 @@ use std::sync::Arc;
 use super::document::{EXTRA_FILE, actuators, file_name, include};
 use super::embedded;
 use super::error::SceneError;
+use super::third::VersionAssets;
 use super::version::Version;
-use crate::assets::{AssetError, AssetSource, DirAssets, directory, resolve};
+use crate::assets::{AssetError, AssetSource, DirAssets, EmbeddedAssets, directory, resolve};
 use crate::config::{Config, Learner, Scene};
 use crate::mjcf_loader::{ErrorKind, LoadError, Location};
 use extra::ExtraElements;
@@ -60,6 +61,8 @@ enum DocumentSource {
 /// The assets of a custom scene: its files over the library's, which keep their names.
 pub(super) struct CustomScene<A> {
     given: A,
+    /// The embedded assets, for what the given ones lack.
+    library: VersionAssets<EmbeddedAssets>,
     own: DocumentSource,
     /// Path of the document, as the configuration has it.
     path: String,
@@ -71,7 +74,7 @@ pub(super) struct CustomScene<A> {
     second: bool,
 }
 
-/// Returns the assets of a configuration's scene: `assets`, or for a custom scene ([`Scene::File`]) its files over them, and likewise the
+/// Returns the assets of a configuration's scene: `assets` with the documents of its version of MIMo, or for a custom scene ([`Scene::File`]) its files over them, and likewise the
 /// additions to a scene of the library ([`Config::scene_extra`]).
 ///
 /// The document is one of `assets`, if they have its path; otherwise it is a file of the system, whose folder then has its textures and
@@ -80,13 +83,15 @@ pub(super) struct CustomScene<A> {
 /// # Errors
 /// A document that does not exist, or has the name of a file of the library.
 pub fn scene_assets(config: &Config, assets: Arc<dyn AssetSource>) -> Result<Arc<dyn AssetSource>, CustomSceneError> {
+    let assets = VersionAssets::new(config, assets);
     Ok(match CustomScene::open(config, assets.clone())? {
         Some(room) => Arc::new(room),
-        None => assets,
+        None => Arc::new(assets),
     })
 }
 
-/// Returns the assets of a custom scene over some that are borrowed; `None` if the scene is one of the library.
+/// Returns the assets of a custom scene over some that are borrowed and have the configuration's version of MIMo; `None` if the scene is
+/// one of the library.
 #[cfg(feature = "eval")]
 pub(crate) fn open_custom_scene<'a>(
     config: &Config,
@@ -102,6 +107,7 @@ impl<A: AssetSource> CustomScene<A> {
             extra::check(&config.scene_extra)?;
             return Ok(Some(Self {
                 given,
+                library: VersionAssets::new(config, embedded()),
                 own: DocumentSource::Added(ExtraElements::new(&config.scene_extra)),
                 path: extra::SHOWN.to_string(),
                 written: written(config),
@@ -134,6 +140,7 @@ impl<A: AssetSource> CustomScene<A> {
         };
         let room = Self {
             given,
+            library: VersionAssets::new(config, embedded()),
             own,
             path: path.clone(),
             written: written(config),
@@ -165,7 +172,7 @@ impl<A: AssetSource> CustomScene<A> {
     /// Reads a file of the library: the given one, if the assets replace it.
     fn read_library(&self, path: &str) -> Result<Cow<'_, [u8]>, AssetError> {
         match self.given.read(path) {
-            Err(AssetError::NotFound(_)) => Ok(Cow::Owned(embedded().read(path)?.into_owned())),
+            Err(AssetError::NotFound(_)) => self.library.read(path),
             answer => answer,
         }
     }

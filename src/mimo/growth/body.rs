@@ -29,19 +29,28 @@ pub(super) fn foot(now: &Lengths, base: &Lengths) -> FootLengths {
     }
 }
 
-/// Adds the trunk, which follows the breadth of the hip; its heights have a factor.
-pub(super) fn trunk(now: &Lengths, base: &Lengths, stretch: Stretch, out: &mut BodyShapes) {
+/// Adds the trunk, which follows the breadth of the hip; its heights have a factor. A chest of its own has the upper body's last geom,
+/// and leaves a stump of a neck there.
+pub(super) fn trunk(now: &Lengths, base: &Lengths, has_chest: bool, stretch: Stretch, out: &mut BodyShapes) {
     let h = now.hip_breadth / base.hip_breadth;
     let up = h * stretch.trunk;
     let capsule = |radius: f64, half: f64, x: f64, z: f64| (long(radius * h, half * h), [x, 0.0, z * up]);
     out.geoms(Side::Middle, "hip", [capsule(0.048, 0.043, -0.002, 0.005)]);
     out.geoms(Side::Middle, "lower_body", [capsule(0.053, 0.035, 0.005, -0.008)]);
-    let upper = [
-        capsule(0.052, 0.035, 0.007, -0.032),
-        capsule(0.048, 0.039, 0.004, 0.03),
-        capsule(0.041, 0.047, 0.0, 0.09),
-    ];
-    out.geoms(Side::Middle, "upper_body", upper);
+    let (waist, ribs) = (capsule(0.052, 0.035, 0.007, -0.032), capsule(0.048, 0.039, 0.004, 0.03));
+    if has_chest {
+        let radius = head_radius(now, base) / 4.0;
+        let neck = (long(radius, NECK / 2.0), on_z(0.131 * up + NECK / 2.0));
+        out.geoms(Side::Middle, "upper_body", [waist, ribs, neck]);
+        out.geoms(Side::Middle, "chest", [capsule(0.041, 0.047, 0.0, 0.0)]);
+        out.bodies(Side::Middle, [("chest", on_z(0.09 * up))]);
+    } else {
+        out.geoms(
+            Side::Middle,
+            "upper_body",
+            [waist, ribs, capsule(0.041, 0.047, 0.0, 0.09)],
+        );
+    }
     let bodies = [
         ("hip", [0.0; 3]),
         ("lower_body", [0.002, 0.0, 0.076 * up]),
@@ -60,10 +69,15 @@ pub(super) fn trunk(now: &Lengths, base: &Lengths, stretch: Stretch, out: &mut B
     );
 }
 
+/// Returns the radius of the head, m.
+fn head_radius(now: &Lengths, base: &Lengths) -> f64 {
+    0.0735 * (now.head_circumference / base.head_circumference)
+}
+
 /// Adds the head with the eyes, which follow its circumference.
 pub(super) fn head(now: &Lengths, base: &Lengths, out: &mut BodyShapes) {
     let k = now.head_circumference / base.head_circumference;
-    let radius = 0.0735 * k;
+    let radius = head_radius(now, base);
     out.geoms(Side::Middle, "head", [(sphere(radius), [0.01 * k, 0.0, radius])]);
     out.geoms(Side::Both, "eye", [(sphere(0.01125 * k), [0.0; 3])]);
     out.bodies(Side::Both, [("eye", [0.07, 0.0245, 0.067375].map(|x| x * k))]);
@@ -77,7 +91,13 @@ pub(super) fn head(now: &Lengths, base: &Lengths, out: &mut BodyShapes) {
 }
 
 /// Adds the arms without hands. Returns the radius and half length of the forearm.
-pub(super) fn arms(now: &Lengths, base: &Lengths, stretch: Stretch, out: &mut BodyShapes) -> (f64, f64) {
+pub(super) fn arms(
+    now: &Lengths,
+    base: &Lengths,
+    has_chest: bool,
+    stretch: Stretch,
+    out: &mut BodyShapes,
+) -> (f64, f64) {
     let h = now.hip_breadth / base.hip_breadth;
     let bone = |l: &Lengths| l.shoulder_elbow_length - l.upper_arm_circumference;
     let upper = (
@@ -91,7 +111,8 @@ pub(super) fn arms(now: &Lengths, base: &Lengths, stretch: Stretch, out: &mut Bo
     );
     out.geoms(Side::Both, "upper_arm", [(long(upper.0, upper.1), on_z(upper.1))]);
     out.geoms(Side::Both, "lower_arm", [(long(lower.0, lower.1), on_z(lower.1))]);
-    let shoulder = [0.0, 0.088 * h + 0.25 * upper.0, 0.09 * (h * stretch.trunk)];
+    let height = if has_chest { 0.0 } else { 0.09 * (h * stretch.trunk) };
+    let shoulder = [0.0, 0.088 * h + 0.25 * upper.0, height];
     out.bodies(Side::Both, [("upper_arm", shoulder)]);
     out.bodies(Side::Both, [("lower_arm", on_z(2.0 * upper.1))]);
     out.joints(Side::Both, [("shoulder_horizontal", [0.0; 3])]);

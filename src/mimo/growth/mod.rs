@@ -6,14 +6,15 @@
 //! that of gravity (`ratios`, `maturity`), and with `proportions: measured` trunk and legs those of infants (`proportions`). Below one month four of the curves fall steeply, so the
 //! proportions of a newborn are the least certain.
 //!
-//! Source: MIMo's authors, arXiv 2509.09805 (ICDL 2025), and the code of their repository. Its model has a chest that
-//! BabyBench's lacks; here the chest's parts belong to the upper body. Its muscles keep their strength at all ages; here
-//! they follow the motors.
+//! Source: MIMo's authors, arXiv 2509.09805 (ICDL 2025), and the code of their repository. Their model is MIMo 3, which has a chest; in
+//! MIMo 2 the chest's parts belong to the upper body. Its muscles keep their strength at all ages, as here for MIMo 3 under
+//! `compat: reference`; otherwise they follow the motors.
 
 mod blame;
 mod body;
 mod fingers;
 mod gravity;
+mod landmarks;
 mod lengths;
 mod maturity;
 mod mitten;
@@ -26,6 +27,7 @@ use thiserror::Error;
 
 use super::error::SceneError;
 use super::sources::SourcedConstant;
+use super::third::CHEST;
 use super::{EYES, JOINT_PREFIX, ROOT, Version};
 use crate::assets::AssetSource;
 use crate::config::{Compat, Config, MAX_AGE, SpringModel, StrengthModel};
@@ -77,6 +79,10 @@ pub enum GrowthError {
 pub struct Growth {
     age: f64,
     version: Version,
+    /// Whether it is MIMo 3.
+    has_chest: bool,
+    /// Whether muscles keep their strength.
+    same_muscles: bool,
     body: BodyShapes,
     /// The body of the strength's age.
     strong: BodyShapes,
@@ -100,11 +106,12 @@ impl Growth {
             }
         }
         let base = Lengths::base();
+        let has_chest = config.mimo_version == CHEST;
         let now = Lengths::new(age, &config.measurements);
         let grown = |age: f64, config: &Config| {
             let lengths = Lengths::new(age, &config.measurements);
             let stretch = Stretch::of(config.proportions, age, &lengths, &base);
-            let shapes = shapes(version, &lengths, &base, stretch);
+            let shapes = shapes(version, has_chest, &lengths, &base, stretch);
             check(&shapes).map(|()| shapes)
         };
         let made = |age: f64| {
@@ -118,6 +125,8 @@ impl Growth {
         Ok(Some(Self {
             age,
             version,
+            has_chest,
+            same_muscles: has_chest && config.compat == Compat::Reference,
             body,
             strong,
             strength_age,
@@ -221,7 +230,13 @@ impl Growth {
             let Some(ratio) = self.volume_ratio(&ratios, actuator.name) else {
                 continue;
             };
-            *actuator.gear *= ratio * strength::share(actuator.name, self.version);
+            *actuator.gear *= ratio;
+            if !self.has_chest {
+                *actuator.gear *= strength::share(actuator.name, self.version);
+            }
+            if self.same_muscles {
+                continue;
+            }
             // VMAX, the velocity of the muscles, stays; FMAX of the negative and of the positive muscle follow
             actuator.user.iter_mut().skip(1).for_each(|fmax| *fmax *= ratio);
         }
@@ -262,17 +277,20 @@ pub(super) fn constants() -> Vec<SourcedConstant> {
 }
 
 /// Returns the sizes and positions of a version of MIMo with given lengths.
-fn shapes(version: Version, now: &Lengths, base: &Lengths, stretch: Stretch) -> BodyShapes {
+fn shapes(version: Version, has_chest: bool, now: &Lengths, base: &Lengths, stretch: Stretch) -> BodyShapes {
     let mut out = BodyShapes::default();
     let foot = body::foot(now, base);
-    body::trunk(now, base, stretch, &mut out);
+    body::trunk(now, base, has_chest, stretch, &mut out);
     body::head(now, base, &mut out);
-    let forearm = body::arms(now, base, stretch, &mut out);
+    let forearm = body::arms(now, base, has_chest, stretch, &mut out);
     body::legs(now, base, &foot, stretch, &mut out);
     match version {
         Version::V1 => {
             mitten::hands(now, base, forearm, &mut out);
             mitten::toes(now, &foot, &mut out);
+            if has_chest {
+                landmarks::add(now, base, &foot, &mut out);
+            }
         }
         Version::V2 => {
             fingers::hands(now, base, forearm, &mut out);

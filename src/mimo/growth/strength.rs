@@ -24,7 +24,7 @@ pub(super) fn carrier(actuator: &str, version: Version) -> Option<(String, usize
     Some((body, index))
 }
 
-/// Returns the factor on the gear of an actuator at any age. The authors' growth gives v2's toes the strength of its big toe,
+/// Returns the factor on the gear of an actuator of MIMo 2 at any age. The authors' growth gives v2's toes the strength of its big toe,
 /// half of the original body's.
 pub(super) fn share(actuator: &str, version: Version) -> f64 {
     match (version, actuator) {
@@ -37,7 +37,8 @@ pub(super) fn share(actuator: &str, version: Version) -> f64 {
 const SOLE: usize = 1;
 
 /// Bodies without side, the index of the geom among theirs, and the actuators that it carries.
-const CARRIERS: [(&str, usize, &[&str]); 27] = [
+const CARRIERS: [(&str, usize, &[&str]); 28] = [
+    ("chest", 0, &["chest_twist", "chest_lean"]),
     ("lower_body", 0, &["hip_bend", "hip_twist", "hip_lean"]),
     ("head", 0, &["head_swivel", "head_tilt", "head_tilt_side"]),
     ("eye", 0, &["eye_horizontal", "eye_vertical", "eye_torsional"]),

@@ -74,9 +74,10 @@ impl DrivenJoints {
             {
                 return DrivenPart::Head;
             }
-            let of = |hand: &usize| {
-                moved != trunk && model.in_subtree(moved, trunk) && model.in_subtree(palms[*hand], moved)
-            };
+            // the chest of MIMo 3 carries both arms and belongs to neither
+            let carries = |hand: usize| model.in_subtree(palms[hand], moved);
+            let both = (0..HANDS).all(carries);
+            let of = |hand: &usize| moved != trunk && model.in_subtree(moved, trunk) && !both && carries(*hand);
             match (0..HANDS).find(of) {
                 Some(hand) if moved == palms[hand] => DrivenPart::Wrist(hand),
                 Some(hand) => DrivenPart::Arm(hand),

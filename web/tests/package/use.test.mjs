@@ -50,6 +50,17 @@ test("a program elsewhere installs and runs it", () => {
   }
 });
 
+test("MIMo 3 has a chest", () => {
+  for (const [behavior, nv] of [["self_touch", 55], ["hand_regard", 99]]) {
+    const env = new Env({ mimo_version: 3, behavior, age: 3, vision_active: false, touch_active: false });
+    env.reset(0);
+    env.step();
+    assert.ok(env.model.bodies.some(({ name }) => name === "chest"));
+    assert.equal(env.model.nv, nv);
+  }
+  assert.throws(() => new Env({ mimo_version: 4 }), /mimo_version/);
+});
+
 const rooms = fileURLToPath(new URL("../../../docs/guide/rooms", import.meta.url));
 
 test("a room of one's own is made of files in memory", () => {

@@ -66,7 +66,7 @@ fn write_sizes(out: &mut impl Write, env: &Env) -> io::Result<()> {
         out,
         "{}: MIMo {} for behavior {}, actuation {}",
         config.scene,
-        Version::of(config.behavior).name(),
+        Version::label(config),
         config.behavior,
         config.actuation_model
     )?;

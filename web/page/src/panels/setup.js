@@ -16,6 +16,8 @@ const SCENES = [["crib", "Crib"], ["cubes", "Cubes"], ["base", "Floor"], ["mobil
 /** @type {[string, string][]} */
 const BODIES = [["v1", "Mitten hands (v1)"], ["v2", "Five fingers (v2)"]];
 /** @type {[string, string][]} */
+const VERSIONS = [["2", "MIMo 2"], ["3", "MIMo 3"]];
+/** @type {[string, string][]} */
 const ACTUATION = [["spring_damper", "Torque"], ["muscle", "Muscles"], ["positional", "Angles"]];
 
 /** @type {[string, string][]} */
@@ -59,9 +61,9 @@ function scene(app) {
   const places = choice("Scene", SCENES, (v) => change({ scene: v }));
   const isTask = (/** @type {unknown} */ name) => String(name) in TASKS;
   const choose = (/** @type {string} */ v) => {
-    const { behavior, age } = app.settings;
+    const { behavior, age, mimo_version } = app.settings;
     // settings of another task would conflict with the defaults of this one
-    const kept = { behavior: v, age, vision_active: false, max_episode_steps: 12_000 };
+    const kept = { behavior: v, age, mimo_version, vision_active: false, max_episode_steps: 12_000 };
     if (isTask(v)) attempt(() => app.begin(kept));
     else if (isTask(behavior)) attempt(() => app.begin({ ...kept, scene: "crib" }));
     else change({ behavior: v });
@@ -69,6 +71,7 @@ function scene(app) {
   const behaviors = choice("Behavior", Object.entries(BEHAVIORS), choose);
   const task = el("select", { "aria-label": "Task", onchange: () => choose(task.value || "self_touch") }, el("option", { value: "" }, "None"), ...Object.entries(TASKS).map(([value, { title }]) => el("option", { value }, title)));
   const bodies = choice("Body", BODIES, (v) => change({ behavior: v === "v2" ? "hand_regard" : "self_touch" }));
+  const versions = choice("Version", VERSIONS, (v) => change({ mimo_version: Number(v) }));
   const actuation = choice("Actuation", ACTUATION, (v) => change({ actuation_model: v }));
   const original = button("Original", () => change({ age: null }), "tiny");
   const age = slider("Months", { min: 0, max: 24, step: 0.5, value: ORIGINAL, format: String, label: "Age of the body" }, () => {});
@@ -84,6 +87,7 @@ function scene(app) {
     behaviors.set(String(s.behavior));
     task.value = isTask(s.behavior) ? String(s.behavior) : "";
     bodies.set(s.behavior === "hand_regard" ? "v2" : "v1");
+    versions.set(String(s.mimo_version ?? 2));
     actuation.set(String(s.actuation_model));
   });
   const goal = el("p", { className: "small" });
@@ -102,6 +106,7 @@ function scene(app) {
     goal,
     place,
     body,
+    line("Version", versions, "The chest of MIMo 3 has two joints of its own."),
     line("Growth", el("div", { className: "age" }, age, original), "Size, mass and strength at an age. The original is measured as a child of 18 months."),
     line("Face", face, "At any moment; nothing else changes."),
     line("Actuation", actuation, "Torques, pairs of opposing muscles, or desired angles."),
