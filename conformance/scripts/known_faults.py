@@ -4,7 +4,7 @@ usage: python known_faults.py                        measures the mujoco that th
        python known_faults.py --babybench            measures babybench.mujoco of this Python
        python known_faults.py --table FILE ...       writes a table of such JSON files, in their order
 
-Each measurement is 0 where there is no fault. Needs numpy, and mujoco or babybench. For several releases:
+Each measurement is 0 in a release without the fault. Requires numpy, and mujoco or babybench. For several releases:
 pip install --no-deps --target DIR mujoco==3.3.5, and PYTHONPATH=DIR python known_faults.py > 3.3.5.json
 """
 

@@ -12,7 +12,7 @@ pub enum Mark {
     Read,
     /// Measured or calibrated with this simulator.
     Measured,
-    /// Seen in an abstract or in somebody's summary of the source.
+    /// Taken from an abstract or from a secondary source.
     Seen,
     /// Nobody's measurement: general knowledge, or a design of this project.
     Unsourced,

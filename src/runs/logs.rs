@@ -125,7 +125,7 @@ fn check_inside(path: &Path) -> Result<(), LogError> {
     let (Ok(run), Ok(target)) = (run.canonicalize(), path.canonicalize()) else {
         return Ok(());
     };
-    // a folder from somebody else must not make this program overwrite or show files elsewhere
+    // a folder that someone else made must not lead this program to read or overwrite files outside of it
     if target.starts_with(&run) {
         Ok(())
     } else {

@@ -1,4 +1,4 @@
-//! What infants of an age can do, with the strength and the springs of infants.
+//! Tests that MIMo, with the strength and springs of infants, does what infants of his age can do.
 
 use babybench::config::{ActuationModel, Behavior, Compat, Proportions, Scene, SpringModel, StrengthModel};
 use babybench::mimo::{BodyFigures, Version, embedded, strength_table};

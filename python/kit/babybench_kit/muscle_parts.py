@@ -28,7 +28,7 @@ def bump(length: ArrayLike, a: float, mid: float, b: float) -> Array:
 
 
 class MuscleParts:
-    """What each of the two muscles of an actuator is at: ``..._1`` pulls to the negative side, ``..._2`` to the positive one."""
+    """The state of an actuator's two muscles: ``..._1`` pulls to the negative side, ``..._2`` to the positive one."""
 
     lmin: float
     lmax: float

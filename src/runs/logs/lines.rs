@@ -118,7 +118,7 @@ impl JsonLines {
             self.adopt(path, resumed, before).ok().flatten()
         };
         let known = known.or_else(adopt).filter(usable);
-        // a failure to append is no error yet: writing everything anew may still work
+        // if appending fails, writing the whole file again may still work
         let added = known.and_then(|known| self.append(path, &known, recent.range(last(known.records)?..)).ok());
         if added.is_none() {
             self.write_all(path, visit)?;
