@@ -15,7 +15,8 @@ from numpy.typing import ArrayLike, NDArray
 from . import tables
 from .actuation import MODELS, ActuationModel, EngineActuation, SpringDamperModel
 from .core import Core
-from .mimo_env import _ORIGINAL, DEFAULT_SIZE, EMOTES, SCENE_NAME, MIMoEnv
+from .known_scenes import SCENE_NAME
+from .mimo_env import _ORIGINAL, DEFAULT_SIZE, EMOTES, MIMoEnv
 from .replaceable import replaced
 from .sensing import Observation
 from .utils import get_child_bodies, get_geoms_for_body

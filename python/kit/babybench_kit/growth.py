@@ -48,6 +48,7 @@ def grown(path: Path, age: float) -> ElementTree.Element:
         "touch_active": False,
         "vision_active": False,
         "vestibular_active": False,
+        "mimo_version": 3 if scene.third else 2,
     }
     model = blueprint(Settings(dict(_native.config_from_mapping(config))), scene)
     root, read = flat(path), model.model_array

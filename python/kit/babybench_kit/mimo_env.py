@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import os
 from collections.abc import Mapping
-from pathlib import Path
 from typing import Any, NoReturn
 
 import numpy as np
@@ -16,14 +15,14 @@ from numpy.typing import ArrayLike, NDArray
 
 from babybench_core import _native
 
-from . import tables
 from .actuation import MODELS, ActuationModel, SpringDamperModel
-from .assets import assets_folder, assets_path
 from .core import Core
 from .course import Share
+from .goal_env import GoalEnv
+from .known_scenes import SCENE_NAME, known_scene
 from .renderer import MujocoRenderer
 from .replaceable import refuse_uncalled, replaced
-from .scene import Scene, read_any_scene, read_scene
+from .scene import Scene
 from .sensing import Observation, SensingEnv
 from .settings import engine_settings
 
@@ -31,9 +30,6 @@ Array = NDArray[np.float64]
 
 DEFAULT_SIZE = 480
 """Width and height of pictures for people, pixels."""
-
-SCENE_NAME = "babybench.xml"
-"""The scene of environments without a configuration."""
 
 EMOTES = {"default": "tex_head_default"} | {
     emotion: f"tex_head_{emotion}" for emotion in ("happy", "sad", "surprised", "angry", "disgusted", "scared")
@@ -53,26 +49,8 @@ _WITHIN_STEP = (
 _UNCALLED = ("_step_mujoco_simulation", "viewer_setup")
 """Methods of Gymnasium's ``MujocoEnv`` that nothing calls here."""
 
-_DEFAULT_SCENE = Scene(
-    keys={"scene": "base", **{f"act_{part}": True for part in tables.PARTS}},
-    place={"pos": [0.0, 0.0, 0.075]},
-    servos=False,
-)
-"""Description of :data:`SCENE_NAME`."""
 
-
-def _known_scene(model_path: str | os.PathLike[str], any_scene: bool) -> Scene:
-    path = Path(model_path)
-    if not path.is_file() and path.parent == assets_path():
-        assets_folder()  # on first use
-    if path.is_file():
-        return read_any_scene(path) if any_scene else read_scene(path)
-    if path.name == SCENE_NAME:
-        return _DEFAULT_SCENE
-    raise FileNotFoundError(f"File {path} does not exist")
-
-
-class MIMoEnv(SensingEnv):
+class MIMoEnv(GoalEnv):
     """MIMo in a scene, with the senses and the actuation that the arguments ask for.
 
     Args:
@@ -106,6 +84,10 @@ class MIMoEnv(SensingEnv):
     _any_scene = True
     """Whether it takes scenes that BabyBench's ``build_xml`` did not write."""
     _forwards_attributes = True
+    _updates_first = False
+    """Whether actuators are updated before the first physics step of a step, too: MIMo 3."""
+    motor_delay = 0
+    """Calls of :meth:`_set_action`, less one, after which an action arrives; 0 for no delay: MIMo 3."""
     init_qpos: Array
     init_qvel: Array
     _ezpickle_args: tuple[Any, ...]
@@ -185,7 +167,7 @@ class MIMoEnv(SensingEnv):
 
     def _initialize_simulation(self) -> None:
         """Compiles the scene, and makes the actuation model."""
-        self._core = self._compile(_known_scene(self.fullpath, self._any_scene), self._actuation, self._config)
+        self._core = self._compile(known_scene(self.fullpath, self._any_scene), self._actuation, self._config)
         self._name_parts()
         self._core.move(self.init_qpos)
         self._set_initial_position(self._initial_qpos)
@@ -316,7 +298,11 @@ class MIMoEnv(SensingEnv):
     def _set_action(self, action: ArrayLike) -> None:
         """Gives an action to the actuation model."""
         self._core.pull()
-        self.actuation_model.action(action)
+        self.actuation_model.action(self._delayed_action(action) if self.motor_delay else action)
+
+    def _delayed_action(self, action: ArrayLike) -> ArrayLike:
+        """Returns the action that arrives when another one is given."""
+        raise NotImplementedError
 
     def _single_mujoco_step(self) -> None:
         """Advances by one physics step."""
@@ -325,6 +311,8 @@ class MIMoEnv(SensingEnv):
     def do_simulation(self, action: ArrayLike, n_frames: int) -> None:
         """Applies an action for a number of physics steps."""
         self._set_action(action)
+        if self._updates_first:
+            self.actuation_model.substep_update()
         self._single_mujoco_step()
         self._substep_callback()
         for _ in range(n_frames - 1):
@@ -422,32 +410,6 @@ class MIMoEnv(SensingEnv):
         if renderer is not None:
             renderer.close()
 
-    # --- what subclasses say ---
-
-    def reset_model(self) -> Observation:
-        """Puts the scene at the start of an episode, and returns the observation."""
-        raise NotImplementedError
-
-    def is_success(self, achieved_goal: Any, desired_goal: Any) -> bool:
-        """Returns whether a goal is reached."""
-        raise NotImplementedError
-
-    def is_failure(self, achieved_goal: Any, desired_goal: Any) -> bool:
-        """Returns whether a goal cannot be reached any more."""
-        raise NotImplementedError
-
-    def is_truncated(self) -> bool:
-        """Returns whether the episode ends for another reason."""
-        raise NotImplementedError
-
-    def sample_goal(self) -> Any:
-        """Returns a goal."""
-        raise NotImplementedError
-
-    def compute_reward(self, achieved_goal: Any, desired_goal: Any, info: dict[str, Any]) -> Any:
-        """Returns the reward of a step."""
-        raise NotImplementedError
-
     # --- copies ---
 
     def __getstate__(self) -> dict[str, Any]:
@@ -483,5 +445,5 @@ _REMADE = frozenset(
 )
 """Attributes that a copy makes anew."""
 
-_ORIGINAL = {**vars(SensingEnv), **vars(MIMoEnv)}
+_ORIGINAL = {**vars(SensingEnv), **vars(GoalEnv), **vars(MIMoEnv)}
 """Methods as this module and :mod:`.sensing` define them."""

@@ -61,4 +61,6 @@ def register_kit() -> None:
     for name, (cls, steps) in MIMO_IDS.items():
         kwargs = {"model_path": scene_path("showroom.xml"), "render_mode": "human"} if name == "MIMoShowroom-v0" else {}
         entry_point = f"mimoEnv.envs:{cls}"
+        if name in gym.registry and str(gym.registry[name].entry_point).startswith("mimo_infant."):
+            del gym.registry[name]  # MIMo 3 gives way, as it does where MIMo 2 came first
         gym.register(id=name, entry_point=entry_point, max_episode_steps=steps, kwargs=kwargs, nondeterministic=True)

@@ -46,6 +46,8 @@ class Scene:
     """Where MIMo is put, if elsewhere than BabyBench does: ``pos``, m."""
     servos: bool | None = None
     """Whether its actuators are position servos; nothing if it has none."""
+    third: bool = False
+    """Whether it has MIMo 3, whose chest is a body of its own."""
     document: Path | None = None
     """The document, if it is compiled as it stands: any scene with MIMo."""
 
@@ -133,16 +135,20 @@ def read_any_scene(path: Path) -> Scene:
     try:
         return read_scene(path)
     except (SceneError, KeyError):
-        return Scene(version=_version(path), document=path)
+        names = _bodies(path)
+        return Scene(version="v2" if "right_ffdistal" in names else "v1", third=names >= _CHEST, document=path)
 
 
-def _version(path: Path) -> str:
-    """Returns the version of MIMo in a document: v2 has fingers."""
+_CHEST = {"chest", "upper_body", "lower_body"}
+"""Bodies that MIMo 3 has together."""
+
+
+def _bodies(path: Path) -> set[str | None]:
+    """Returns the names of the bodies in a document."""
     try:
-        names = {body.get("name") for body in flat(path).iter("body")}
+        return {body.get("name") for body in flat(path).iter("body")}
     except (OSError, ValueError, ElementTree.ParseError):
-        return "v1"  # the compiler says what is wrong
-    return "v2" if "right_ffdistal" in names else "v1"
+        return set()  # the compiler says what is wrong
 
 
 def kit_assets() -> Path | None:

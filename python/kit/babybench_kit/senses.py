@@ -212,7 +212,7 @@ class Vision(Replaceable):
         camera_parameters: ``width`` and ``height`` of each camera's picture, pixels.
     """
 
-    def __init__(self, env: SensingEnv, camera_parameters: dict[str, dict[str, int]]) -> None:
+    def __init__(self, env: SensingEnv, camera_parameters: dict[str, dict[str, Any]]) -> None:
         """Belongs to an environment."""
         self.env = env
         self._core = env._core
@@ -226,7 +226,7 @@ class Vision(Replaceable):
 class SimpleVision(Vision):
     """A picture of each eye."""
 
-    def __init__(self, env: SensingEnv, camera_parameters: dict[str, dict[str, int]]) -> None:
+    def __init__(self, env: SensingEnv, camera_parameters: dict[str, dict[str, Any]]) -> None:
         """Belongs to an environment."""
         super().__init__(env, camera_parameters)
         self._shown = -1
@@ -239,7 +239,9 @@ class SimpleVision(Vision):
         if self._shown != self._core.observed:
             engine, seen = self._core.engine, {} if self._replaced else self._core.observation()
             self.sensor_outputs = {
-                camera: seen[camera] if camera in seen else engine.render(camera, size["width"], size["height"])
+                camera: self._seen(
+                    seen[camera] if camera in seen else engine.render(camera, size["width"], size["height"]), camera
+                )
                 for camera, size in self.camera_parameters.items()
             }
         return self._outputs
@@ -247,6 +249,10 @@ class SimpleVision(Vision):
     @sensor_outputs.setter
     def sensor_outputs(self, outputs: dict[str, NDArray[np.uint8]]) -> None:
         self._outputs, self._shown = outputs, self._core.observed
+
+    def _seen(self, picture: NDArray[np.uint8], camera: str) -> NDArray[np.uint8]:
+        """Returns what is seen of a camera's picture: all of it."""
+        return picture
 
     def get_vision_obs(self) -> dict[str, NDArray[np.uint8]]:
         """Looks, and returns what the eyes see, (height, width, 3) each."""

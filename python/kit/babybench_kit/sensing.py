@@ -41,6 +41,8 @@ class SensingEnv(gym.Env):  # type: ignore[type-arg,unused-ignore]
     goals_in_observation: bool
     goal: Any
     actuation_model: ActuationModel
+    sensory_delay = 0
+    """Observations, less one, after which one arrives; 0 for no delay: MIMo 3."""
     _core: Core
     _share = Share.SENSES
 
@@ -102,7 +104,7 @@ class SensingEnv(gym.Env):  # type: ignore[type-arg,unused-ignore]
         components = set((self.proprio_params or {}).get("components", ()))
         return (
             not replaced(self, _ORIGINAL, _HOOKS)
-            and all(type(sense) in known for sense in senses)
+            and all(type(sense) in known or getattr(sense, "_as_known", False) for sense in senses)
             and not any(sense._replaced for sense in senses if isinstance(sense, Replaceable))
             and (self.touch is None or self.touch._plain)
             and (self.vision is None or self._core.config["vision_active"])
@@ -136,6 +138,14 @@ class SensingEnv(gym.Env):  # type: ignore[type-arg,unused-ignore]
         return self.vestibular.get_vestibular_obs()
 
     def _get_obs(self) -> Observation:
+        """Returns the observation: the present one, or an earlier one with ``sensory_delay``."""
+        return self._delayed_observation(self._sensed()) if self.sensory_delay else self._sensed()
+
+    def _delayed_observation(self, observation: Observation) -> Observation:
+        """Returns the observation that arrives when another one is made."""
+        raise NotImplementedError
+
+    def _sensed(self) -> Observation:
         """Returns the present observation."""
         core = self._core
         core.observe()

@@ -124,6 +124,8 @@ def engine_settings(
     keys.update(frame_skip=frame_skip, render_size=size, actuation_model=actuation)
     if age is not None:
         keys["age"] = age
+    if scene.third:
+        keys["mimo_version"] = 3
     keys["vestibular_active"] = balance is not None
     keys.update(_vision(vision) if vision is not None else {"vision_active": False})
     spacing = None

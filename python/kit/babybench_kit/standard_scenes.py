@@ -215,14 +215,23 @@ def _parts(folder: Path, version: str) -> dict[str, ElementTree.Element]:
     return {_META[version]: meta, _MODEL[version]: model}
 
 
-def write_scenes(folder: Path) -> None:
-    """Writes all scenes into a folder that has the library's documents, unless they are there."""
+def _drop_chest(root: ElementTree.Element) -> None:
+    """Takes motors, sense and contact rule of the chest away, which the static test of muscles does not have."""
+    for parent in list(root.iter()):
+        for child in list(parent):
+            named = child.get("name", "").startswith(("act:chest_", "proprio:chest"))
+            if named or (child.tag == "exclude" and "chest" in child.attrib.values()):
+                parent.remove(child)
+
+
+def write_scenes(folder: Path, version: int = 2) -> None:
+    """Writes all scenes with a version of MIMo into a folder that has the library's documents, unless they are there."""
     mark = folder / "scenes.complete"
     if mark.is_file():
         return
     (folder / "mimo").mkdir(exist_ok=True)
-    for version in _META:
-        for name, root in _parts(folder, version).items():
+    for body in _META:
+        for name, root in _parts(folder, body).items():
             _put(folder / "mimo" / name, root)
     for task in TASKS:
         part = folder / f"{task}.{os.getpid()}.part"
@@ -235,6 +244,8 @@ def write_scenes(folder: Path) -> None:
         root = flat(part, lambda path: f"tex/{path.name}")
         if "static" in name:
             _hold_joints(root)
+            if version == 3:
+                _drop_chest(root)
         elif name == "showroom.xml":
             _dull_floor(root)
         _put(folder / name, root)

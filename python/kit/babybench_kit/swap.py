@@ -16,8 +16,11 @@ if TYPE_CHECKING:
 
 CHOICE = "BABYBENCH_MIMO"
 """The variable that decides: ``babybench`` or ``original``."""
-MIMO = ("mimoActuation", "mimoEnv", "mimoGrowth", "mimoProprioception", "mimoTouch", "mimoVestibular", "mimoVision")
-"""Packages of MIMo."""
+MIMO = (
+    *("mimoActuation", "mimoEnv", "mimoGrowth", "mimoProprioception", "mimoTouch", "mimoVestibular", "mimoVision"),
+    "mimo_infant",
+)
+"""Packages of MIMo 2, and that of MIMo 3."""
 
 _SERVED_BY_MIMO = (
     "{name} is MIMo's own ({folder}): MuJoCo runs these environments, not the engine of babybench. To run them on it, import "

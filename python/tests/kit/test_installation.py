@@ -11,7 +11,7 @@ import pytest
 
 from .conftest import MIMO, run
 
-STAND_INS = (*MIMO, "mimoGrowth", "mujoco")  # the kit's MIMo has no mimoGrowth
+STAND_INS = (*MIMO, "mimoGrowth", "mimo_infant", "mujoco")  # the kit's MIMo has no mimoGrowth, and is not MIMo 3
 WHERE = "import mimoEnv.utils, mimoTouch.touch as t; print(mimoEnv.utils.__file__); print(t.TrimeshTouch.__module__)"
 
 

@@ -13,8 +13,8 @@ from numpy.typing import ArrayLike, NDArray
 from .. import tables, utils
 from ..actuation import ActuationModel, MuscleModel
 from ..assets import scene_path
-from ..mimo_env import MIMoEnv
 from ..sensing import Observation
+from .base import TaskMethods
 from .looking import HeadTracking
 
 CATCH_XML = scene_path("catch_scene.xml")
@@ -46,7 +46,7 @@ _LEAST_FORCE = 1e-9
 """Least normal force of a contact that counts, N."""
 _HELD = 100
 _COST = 40
-_BONUS = 100
+BONUS = 100
 _LOST = (0.1, 0.5)
 """How far the ball may be below the hand, and from it, m."""
 _SETTLING = 50
@@ -54,7 +54,7 @@ _SETTLING = 50
 _JITTER = (0.8, 1.2)
 
 
-class MIMoCatchEnv(MIMoEnv):
+class MIMoCatchEnv(TaskMethods):
     """A ball of random size and mass falls into MIMo's right hand, and he holds it.
 
     The reward is 1 for contact with the ball, less 40 times the cost of the actuation model, 100 for success and -100 for
@@ -178,7 +178,7 @@ class MIMoCatchEnv(MIMoEnv):
         reward = float(self._currently_in_contact())
         if self.action_penalty:
             reward -= _COST * self.actuation_model.cost()
-        return reward + _BONUS * (bool(info["is_success"]) - bool(info["is_failure"]))
+        return reward + BONUS * (bool(info["is_success"]) - bool(info["is_failure"]))
 
     def do_simulation(self, action: ArrayLike, n_frames: int) -> None:
         """Applies an action times the factors of the jitter, limited to 0 to 1."""
@@ -198,18 +198,6 @@ class MIMoCatchEnv(MIMoEnv):
         """Tells whether the ball is lost."""
         ball, hand = (self._core.present.xpos[body] for body in (self.target_id, self.hand_id))
         return bool(ball[2] < hand[2] - _LOST[0] or np.linalg.norm(ball - hand) > _LOST[1])
-
-    def is_truncated(self) -> bool:
-        """Returns False."""
-        return False
-
-    def sample_goal(self) -> Any:
-        """Returns an empty array."""
-        return np.zeros(0)
-
-    def get_achieved_goal(self) -> Any:
-        """Returns an empty array."""
-        return np.zeros(0)
 
     def reset_model(self) -> Observation:
         """Throws another ball, lets the arm settle, and returns the observation."""

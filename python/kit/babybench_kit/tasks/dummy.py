@@ -6,15 +6,14 @@ import os
 from collections.abc import Mapping
 from typing import Any
 
-import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from .. import tables, utils
 from ..actuation import ActuationModel, MuscleModel, SpringDamperModel
 from ..assets import scene_path
-from ..mimo_env import MIMoEnv
 from ..sensing import Observation
 from ..touch import TrimeshTouch
+from .base import TaskMethods
 
 DEMO_XML = scene_path("showroom.xml")
 BENCHMARK_XML = scene_path("benchmark_scene.xml")
@@ -23,7 +22,7 @@ TEST_XML = scene_path("test_scene.xml")
 """A name that MIMo has, too, without the file."""
 
 
-class MIMoDummyEnv(MIMoEnv):
+class MIMoDummyEnv(TaskMethods):
     """MIMo v1 with all senses beside two objects on a plane, without a goal or a reward.
 
     Args:
@@ -99,22 +98,6 @@ class MIMoDummyEnv(MIMoEnv):
     def is_success(self, achieved_goal: Any, desired_goal: Any) -> bool:
         """Returns False."""
         return False
-
-    def is_failure(self, achieved_goal: Any, desired_goal: Any) -> bool:
-        """Returns False."""
-        return False
-
-    def is_truncated(self) -> bool:
-        """Returns False."""
-        return False
-
-    def sample_goal(self) -> Any:
-        """Returns an empty array."""
-        return np.zeros(0)
-
-    def get_achieved_goal(self) -> NDArray[np.float64]:
-        """Returns zeros in the shape of the goal."""
-        return np.zeros(np.shape(self.goal))
 
     def compute_reward(self, achieved_goal: Any, desired_goal: Any, info: dict[str, Any]) -> float:
         """Returns 0."""

@@ -21,23 +21,27 @@ _STRAIGHT = ("head_tilt_side", "left_eye_vertical", "left_eye_torsional", "right
 class HeadTracking:
     """The joints of head and eyes, as indices in ``qpos``."""
 
-    def __init__(self, core: Core, free: tuple[str, ...] = ()) -> None:
-        """Finds the joints; those in ``free`` are left alone."""
+    def __init__(self, core: Core, free: tuple[str, ...] = (), straight: tuple[str, ...] = ()) -> None:
+        """Finds the joints; those in ``free`` are left alone.
+
+        With joints in ``straight``, which are held at zero, the distance of a point counts from the height of the eyes: MIMo 3.
+        """
         addresses = core.blueprint.model_array("jnt_qposadr")
 
         def address(name: str) -> int:
             return int(addresses[core.names["joint"].index(f"robot:{name}")])
 
-        self._core = core
+        self._core, self._from_eyes = core, bool(straight)
         self._head = core.names["body"].index("head")
         self._swivel, self._tilt = address("head_swivel"), address("head_tilt")
-        self._eyes = [address(f"{side}_eye_horizontal") for side in ("left", "right")]
-        self._straight = [address(name) for name in _STRAIGHT if name not in free]
+        eyes = [f"{side}_eye_horizontal" for side in ("left", "right")]
+        self._eyes = [address(name) for name in eyes if name not in straight]
+        self._straight = [address(name) for name in (*_STRAIGHT, *straight) if name not in free]
 
     def look_at(self, point: ArrayLike) -> None:
         """Turns head and eyes towards a point of the world, m, as if it lay in front of the head; velocities stay."""
         x, y, z = np.asarray(point) - self._core.present.xpos[self._head]
-        distance = np.linalg.norm([x, y, z]) - _EYE_FORWARD
+        distance = np.linalg.norm([x, y, z - _EYE_HEIGHT * self._from_eyes]) - _EYE_FORWARD
         qpos: NDArray[Any] = self._core.read("qpos")
         qpos[self._swivel] = np.arctan(y / x)
         qpos[self._tilt] = np.arctan((_EYE_HEIGHT - z) / x)

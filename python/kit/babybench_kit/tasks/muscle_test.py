@@ -29,7 +29,7 @@ COMPLIANCE_CAMERA_CONFIG = {
     "azimuth": 180,
 }
 """The camera in front of MIMo."""
-_SIDE_VIEW = {"azimuth": 135}
+SIDE_VIEW = {"azimuth": 135}
 _FREE = "robot:right_shoulder_ad_ab"
 _WRIST = ("robot:right_hand1", -0.25)
 
@@ -40,7 +40,7 @@ class MIMoStaticMuscleTestEnv(MIMoDummyEnv):
     def __init__(
         self,
         model_path: str | os.PathLike[str] = STATIC_TEST_XML,
-        default_camera_config: dict[str, Any] | None = _SIDE_VIEW,
+        default_camera_config: dict[str, Any] | None = SIDE_VIEW,
         **kwargs: Any,
     ) -> None:
         """Compiles the scene."""
@@ -108,7 +108,7 @@ class MIMoComplianceEnv(MIMoDummyEnv):
         model = self.model
         for joint in self.mimo_joints:
             name = self._core.names["joint"][joint]
-            if name != _FREE:
+            if name != _FREE and name in self._core.names["equality"]:
                 utils.lock_joint(model, name)
         wrist, angle = _WRIST
         utils.lock_joint(model, wrist, joint_angle=angle)

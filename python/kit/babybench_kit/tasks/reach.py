@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 from .. import tables
 from ..actuation import ActuationModel, SpringDamperModel
 from ..assets import scene_path
-from ..mimo_env import MIMoEnv
 from ..sensing import Observation
+from .base import TaskMethods
 from .looking import HeadTracking
 
 REACH_XML = scene_path("reach_scene.xml")
@@ -24,7 +24,7 @@ _BALL = ((-0.1, 0.0), (-0.2, 0.1), (-0.1, 0.0))
 """How far the ball may lie from its place at the start of an episode, m: from, to."""
 
 
-class MIMoReachEnv(MIMoEnv):
+class MIMoReachEnv(TaskMethods):
     """MIMo hangs in the air and knocks a hovering ball away with the right hand; his eyes follow it.
 
     The reward is minus the distance of the right fingers from the ball, m, and 100 more on success: the ball has moved by 1 cm.
@@ -72,22 +72,6 @@ class MIMoReachEnv(MIMoEnv):
         """Tells whether the ball has moved."""
         return bool(np.linalg.norm(self._position("target") - self.target_init_pos) > _MOVED)
 
-    def is_failure(self, achieved_goal: Any, desired_goal: Any) -> bool:
-        """Returns False."""
-        return False
-
-    def is_truncated(self) -> bool:
-        """Returns False."""
-        return False
-
-    def sample_goal(self) -> Any:
-        """Returns an empty array."""
-        return np.zeros(0)
-
-    def get_achieved_goal(self) -> Any:
-        """Returns an empty array."""
-        return np.zeros(0)
-
     def reset_model(self) -> Observation:
         """Moves the arm by random actions, puts the ball at a random place, and returns the observation."""
         self.set_state(self.init_qpos, self.init_qvel)
@@ -107,5 +91,9 @@ class MIMoReachEnv(MIMoEnv):
         """Turns head and eyes towards the ball; the left eye rolls freely, as in MIMo's own."""
         tracking = self.__dict__.get("_tracking")
         if tracking is None:
-            tracking = self.__dict__["_tracking"] = HeadTracking(self._core, free=("left_eye_torsional",))
+            tracking = self.__dict__["_tracking"] = self._make_tracking()
         tracking.look_at(self._position("target"))
+
+    def _make_tracking(self) -> HeadTracking:
+        """Finds the joints that follow the ball."""
+        return HeadTracking(self._core, free=("left_eye_torsional",))

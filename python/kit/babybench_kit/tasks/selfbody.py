@@ -12,8 +12,8 @@ from numpy.typing import ArrayLike, NDArray
 from .. import tables, utils
 from ..actuation import ActuationModel, SpringDamperModel
 from ..assets import scene_path
-from ..mimo_env import MIMoEnv
 from ..sensing import Observation
+from .base import TaskMethods
 from .postures import SITTING, SITTING_BASE
 
 SELFBODY_XML = scene_path("selfbody_scene.xml")
@@ -39,7 +39,7 @@ _SETTLING = 25
 _FOUND = 500
 
 
-class MIMoSelfBodyEnv(MIMoEnv):
+class MIMoSelfBodyEnv(TaskMethods):
     """MIMo sits and touches a part of his body, the goal, with the right arm.
 
     The reward is 500 for the right part, minus the distance from it, m, for another one, and -1 without contact. The arguments
@@ -116,18 +116,6 @@ class MIMoSelfBodyEnv(MIMoEnv):
         bodies = self._core.names["body"]
         fingers, target = (self._core.present.xpos[bodies.index(name)] for name in ("right_fingers", self.target_body))
         return -float(np.linalg.norm(fingers - target))
-
-    def is_failure(self, achieved_goal: Any, desired_goal: Any) -> bool:
-        """Returns False."""
-        return False
-
-    def is_truncated(self) -> bool:
-        """Returns False."""
-        return False
-
-    def get_achieved_goal(self) -> NDArray[np.float64]:
-        """Returns zeros in the shape of the goal."""
-        return np.zeros(np.shape(self.goal))
 
     def reset_model(self) -> Observation:
         """Puts MIMo in his seat, and returns the observation."""

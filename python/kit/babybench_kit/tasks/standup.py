@@ -12,8 +12,8 @@ from numpy.typing import ArrayLike
 from .. import tables
 from ..actuation import ActuationModel, SpringDamperModel
 from ..assets import scene_path
-from ..mimo_env import MIMoEnv
 from ..sensing import Observation
+from .base import TaskMethods
 from .postures import CROUCHING
 
 STANDUP_XML = scene_path("standup_scene.xml")
@@ -28,7 +28,7 @@ _SETTLING = 100
 """Physics steps without action at the start of an episode."""
 
 
-class MIMoStandupEnv(MIMoEnv):
+class MIMoStandupEnv(TaskMethods):
     """MIMo crouches at a railing that he holds, and raises his head.
 
     The reward is the height of the head less 0.2 m, less a hundredth of the squares of the controls. Episodes have no end, but
@@ -74,14 +74,6 @@ class MIMoStandupEnv(MIMoEnv):
     def is_success(self, achieved_goal: Any, desired_goal: Any) -> bool:
         """Tells whether the head is as high as the goal."""
         return bool(achieved_goal >= desired_goal)
-
-    def is_failure(self, achieved_goal: Any, desired_goal: Any) -> bool:
-        """Returns False."""
-        return False
-
-    def is_truncated(self) -> bool:
-        """Returns False."""
-        return False
 
     def sample_goal(self) -> float:
         """Returns the height of a standing MIMo's head, m."""

@@ -1,0 +1,11 @@
+"""Reaching for a ball."""
+
+from babybench_kit.assets import scene_path as _path
+from babybench_kit.assets import written
+from babybench_kit.third.tasks import PATHS as _FILES
+from babybench_kit.third.tasks import MIMoReachEnv
+
+__all__ = ["MIMoReachEnv"]
+
+_XML = ("REACH_XML",)
+__getattr__ = written(__name__, {name: _path(_FILES[name], 3) for name in _XML}, 3)

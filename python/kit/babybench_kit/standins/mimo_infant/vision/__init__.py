@@ -1,0 +1,1 @@
+"""MIMo 3's vision."""
