@@ -3,6 +3,7 @@
 mod anatomy;
 mod assets;
 mod builder;
+mod constants;
 mod custom_scene;
 mod document;
 mod error;

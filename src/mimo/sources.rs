@@ -1,9 +1,6 @@
-//! The constants of infants, with where each comes from.
+//! A constant of infants, with where it comes from.
 
 use std::fmt::{self, Display, Formatter};
-
-use super::growth::constants;
-use crate::spaces::{INFANT_EXPONENT, INFANT_WEEKS};
 
 /// How sure a constant is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -44,24 +41,4 @@ pub struct SourcedConstant {
     pub source: &'static str,
     /// How sure it is.
     pub mark: Mark,
-}
-
-impl SourcedConstant {
-    /// Lists all constants of infants' strength, proportions and noise.
-    pub fn all() -> Vec<Self> {
-        let mut all = constants();
-        let single = |name: &str, value: f64, unit| Self {
-            name: name.to_string(),
-            values: vec![value],
-            ages: Vec::new(),
-            unit,
-            source: "arXiv 2606.16590 (ICDL 2026): wrists and ankles of four infants of 8 to 30 weeks, on video",
-            mark: Mark::Seen,
-        };
-        all.push(single("exponent of movements, at birth", INFANT_EXPONENT[0], "1"));
-        all.push(single("exponent of movements, rise", INFANT_EXPONENT[1], "1/week"));
-        all.push(single("exponent of movements, first age", INFANT_WEEKS[0], "weeks"));
-        all.push(single("exponent of movements, last age", INFANT_WEEKS[1], "weeks"));
-        all
-    }
 }

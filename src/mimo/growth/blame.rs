@@ -1,6 +1,6 @@
 //! Finds the measurements that make a body impossible.
 
-use super::GrowthError;
+use super::error::GrowthError;
 use crate::config::{Config, Key, KeyValue};
 
 /// Returns the error of an impossible body, with the measurements each of which alone is to blame: without it the body `works`. If there

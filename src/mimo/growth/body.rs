@@ -1,5 +1,6 @@
 //! Trunk, head, arms and legs, which both versions of MIMo have in common.
 
+use super::leg_lengths::{FootLengths, thigh};
 use super::lengths::Lengths;
 use super::proportions::Stretch;
 use super::shapes::{BodyShapes, Side, long, on_x, on_z, sphere};
@@ -8,26 +9,6 @@ use super::shapes::{BodyShapes, Side, long, on_x, on_z, sphere};
 pub(super) const SLACK: f64 = 1e-4;
 /// Height of the remaining stump of the neck, m.
 const NECK: f64 = 2e-6;
-
-/// Lengths in which the feet and the toes of both versions are given.
-pub(super) struct FootLengths {
-    /// Ratio of the foot's length to the base's.
-    pub ratio: f64,
-    /// Half thickness, m.
-    pub thickness: f64,
-    /// Distance of the toes from the ankle, m.
-    pub ball: f64,
-}
-
-/// Returns the lengths of the feet.
-pub(super) fn foot(now: &Lengths, base: &Lengths) -> FootLengths {
-    let ratio = now.foot_length / base.foot_length;
-    FootLengths {
-        ratio,
-        thickness: 0.01 * (now.foot_length + now.foot_breadth) / (base.foot_length + base.foot_breadth),
-        ball: 0.054 * ratio,
-    }
-}
 
 /// Adds the trunk, which follows the breadth of the hip; its heights have a factor. A chest of its own has the upper body's last geom,
 /// and leaves a stump of a neck there.
@@ -117,22 +98,6 @@ pub(super) fn arms(
     out.bodies(Side::Both, [("lower_arm", on_z(2.0 * upper.1))]);
     out.joints(Side::Both, [("shoulder_horizontal", [0.0; 3])]);
     lower
-}
-
-/// Returns the radius and the half length of a thigh.
-fn thigh(now: &Lengths, base: &Lengths) -> (f64, f64) {
-    let bone = |l: &Lengths| l.rump_knee_length - l.thigh_circumference;
-    (
-        0.037 * now.thigh_circumference / base.thigh_circumference,
-        0.0625 * bone(now) / bone(base),
-    )
-}
-
-/// Returns the lengths of a thigh and of a shank, and the height of a sole, m.
-pub(super) fn leg(now: &Lengths, base: &Lengths) -> [f64; 3] {
-    let (radius, half) = thigh(now, base);
-    let shin = now.knee_sole_length / base.knee_sole_length;
-    [2.0 * radius + half, 4.0 * 0.044 * shin, foot(now, base).thickness]
 }
 
 /// Adds the legs with feet, without toes; the lengths of thighs and shanks have a factor.

@@ -1,6 +1,6 @@
 //! Sites of MIMo 3, v1, at points of the skeleton BODY_25.
 
-use super::body::FootLengths;
+use super::leg_lengths::FootLengths;
 use super::lengths::Lengths;
 use super::shapes::{BodyShapes, PartPosition, Side, on_x, on_z};
 

@@ -2,9 +2,10 @@
 
 use std::collections::BTreeMap;
 
+use super::error::{GrowthError, missing};
 use super::gravity::Weights;
 use super::ratios::{Against, CURVES, RATIO_AGES, RatioCurve, rule};
-use super::{Growth, GrowthError, missing};
+use super::sizes::Sizes;
 use crate::assets::AssetSource;
 use crate::config::{ActuationModel, Behavior, BodyParts, Config, Scene, SpringModel, StrengthModel};
 use crate::mimo::document::{DOCUMENT, scene_xml};
@@ -51,39 +52,39 @@ struct Torque {
 }
 
 impl Maturity {
-    /// Computes the factors of a body at an age.
+    /// Computes the factors of a body with the strength of an age in months.
     ///
     /// # Errors
     /// Assets that cannot be compiled.
-    pub fn of(config: &Config, growth: &Growth, assets: &dyn AssetSource) -> Result<Self, SceneError> {
-        let text = bare_scene(growth.version);
+    pub fn of(config: &Config, age: f64, sizes: &Sizes, assets: &dyn AssetSource) -> Result<Self, SceneError> {
+        let text = bare_scene(sizes.version);
         let draft = || Draft::read_str(&text, DOCUMENT, assets);
         let original = compile(draft()?.compile(assets)?)?;
         let grown = |shapes| -> Result<Model, SceneError> {
             let mut draft = draft()?;
-            growth.resize(shapes, &mut draft)?;
+            sizes.resize(shapes, &mut draft)?;
             Ok(compile(draft.compile(assets)?)?)
         };
-        let [body, strong] = [grown(&growth.body)?, grown(&growth.strong)?];
-        let volumes = growth.volume_ratios(&mut draft()?)?;
+        let [body, strong] = [grown(&sizes.body)?, grown(&sizes.strong)?];
+        let volumes = sizes.volume_ratios(&mut draft()?)?;
         let bodies = Bodies {
             original: Weights::of(&original),
             strong: Weights::of(&strong),
             model: &original,
-            age: growth.strength_age,
+            age,
         };
         let mut made = Self::default();
         if config.springs == SpringModel::Weight {
             made.springs = springs(&bodies.original, &Weights::of(&body), &original);
         }
         for (actuator, name) in original.actuator_name.iter().enumerate() {
-            let volume = growth.volume_ratio(&volumes, name).unwrap_or(1.0);
+            let volume = sizes.volume_ratio(&volumes, name).unwrap_or(1.0);
             let Some((group, curves)) = rule(without_side(name)) else {
                 continue;
             };
             let before = torques(&original, actuator);
             let own = group.factor(&config.strength_factors);
-            let share = super::strength::share(name, growth.version);
+            let share = super::strength::share(name, sizes.version);
             let mut torque = [Torque::default(); 2];
             for ((torque, curve), before) in torque.iter_mut().zip(curves).zip(before) {
                 torque.factor = own * bodies.factor(curve, volume)?;
@@ -91,7 +92,7 @@ impl Maturity {
             }
             made.strength.insert(name.clone(), torque);
         }
-        made.rows = rows(&bodies, growth, &volumes, &made.strength)?;
+        made.rows = rows(&bodies, sizes, &volumes, &made.strength)?;
         if config.strength == StrengthModel::Volume {
             made.strength.clear();
         }
@@ -189,7 +190,7 @@ impl Bodies<'_> {
 /// Returns the rows of a table of strength.
 fn rows(
     bodies: &Bodies,
-    growth: &Growth,
+    sizes: &Sizes,
     volumes: &[(String, usize, f64)],
     strength: &BTreeMap<String, [Torque; 2]>,
 ) -> Result<Vec<StrengthRow>, GrowthError> {
@@ -199,7 +200,7 @@ fn rows(
         let (Some(actuator), Some(infant)) = (bodies.model.actuator(name), strength.get(name)) else {
             continue;
         };
-        let volume = growth.volume_ratio(volumes, name).unwrap_or(1.0);
+        let volume = sizes.volume_ratio(volumes, name).unwrap_or(1.0);
         let today = torques(bodies.model, actuator)[direction] * volume;
         let gravity = match curve.against {
             Against::Volume => bodies.strong.torque("robot:left_elbow").unwrap_or(f64::NAN),

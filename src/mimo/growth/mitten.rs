@@ -1,6 +1,7 @@
 //! Hands and toes of MIMo v1: a palm, all fingers as one, all toes as one.
 
-use super::body::{FootLengths, SLACK};
+use super::body::SLACK;
+use super::leg_lengths::FootLengths;
 use super::lengths::Lengths;
 use super::shapes::{BodyShapes, Side, long, on_x, on_z};
 

@@ -1,5 +1,6 @@
 //! Lengths of trunk and legs as in infants, within the stature that the authors' formulas give.
 
+use super::leg_lengths::leg;
 use super::lengths::Lengths;
 use crate::config::Proportions;
 use crate::mimo::sources::{Mark, SourcedConstant};
@@ -32,7 +33,7 @@ impl Stretch {
         }
         let breadth = now.hip_breadth / base.hip_breadth;
         let head = 2.0 * 0.0735 * now.head_circumference / base.head_circumference;
-        let [thigh, calf, foot] = super::body::leg(now, base);
+        let [thigh, calf, foot] = leg(now, base);
         let leg = thigh + calf;
         // the hip's joint is 7 mm above that of the legs, the trunk's geoms end 48 mm times the breadth below it
         let stature = 0.298 * breadth + head + 0.007 + leg + foot;
