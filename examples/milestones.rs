@@ -10,6 +10,7 @@
 mod milestones;
 
 use babybench::Config;
+use babybench::config::ConfigReader;
 use babybench::mimo::Version;
 
 /// Ages, months.
@@ -55,7 +56,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
                 for age in AGES {
                     let mut config: Config = make(version, age);
                     if setting == "infant" {
-                        config = config.overlay_yaml(&keys, "the arguments")?;
+                        config = ConfigReader::over(config).read_text(&keys, "the arguments")?;
                     }
                     values.push(format!("{:.2}", measure(&config)));
                 }

@@ -1,6 +1,6 @@
 //! Recordings of the reference, in `data/recordings`.
 
-use babybench::config::{Compat, Config};
+use babybench::config::{Compat, Config, ConfigReader};
 use babybench::formats::npz::Npz;
 use babybench::runs::{Recording, Replay, replay};
 use babybench::{Blueprint, Env};
@@ -33,7 +33,9 @@ impl Golden {
             ..Config::default()
         };
         let text = data::text(&format!("recordings/{name}.yml"));
-        let config = base.overlay_yaml(&text, &name).expect("a valid configuration");
+        let config = ConfigReader::over(base)
+            .read_text(&text, &name)
+            .expect("a valid configuration");
         let npz = data::npz(&format!("recordings/{name}.npz"));
         let floor = npz.get_f64("floor").expect("committed data");
         let steps = floor.shape[1];

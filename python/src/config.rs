@@ -2,8 +2,8 @@
 
 use std::path::PathBuf;
 
-use babybench::config::{Example, KeyKind, KeyValue};
-use babybench::{Config, Limits};
+use babybench::Config;
+use babybench::config::{ConfigReader, Example, KeyKind, KeyValue};
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyBool, PyDict, PyFloat, PyInt, PyList, PyMapping, PyString, PyTuple};
@@ -153,7 +153,11 @@ pub fn config_from_mapping<'py>(py: Python<'py>, mapping: &Bound<'py, PyMapping>
 #[pyfunction]
 #[pyo3(signature = (text, file="configuration", folder=PathBuf::new()))]
 pub fn config_from_yaml<'py>(py: Python<'py>, text: &str, file: &str, folder: PathBuf) -> PyResult<Bound<'py, PyDict>> {
-    let config = Config::default().overlay_yaml_in(text, file, &folder, &Limits::default());
+    let config = ConfigReader {
+        folder,
+        ..ConfigReader::default()
+    }
+    .read_text(text, file);
     let config = config.map_err(IntoException::into_exception)?;
     to_dict(py, &config)
 }

@@ -30,6 +30,7 @@ mod kinds;
 pub(crate) mod latencies;
 mod outputs;
 mod parts;
+mod reader;
 mod scene;
 mod senses;
 #[cfg(feature = "eval")]
@@ -50,6 +51,7 @@ pub use keys::Key;
 pub use kinds::{KeyKind, KeyValue};
 pub use outputs::VisionOutputs;
 pub use parts::{BodyParts, Part};
+pub use reader::ConfigReader;
 pub use scene::Scene;
 pub use table::Config;
 pub use table::{
@@ -59,90 +61,14 @@ pub use table::{
 
 use std::path::Path;
 
-use crate::files;
-use crate::limits::Limits;
-
 impl Config {
     /// Reads a configuration; `file_name` only names the file in errors, and the path of a scene starts at the working directory.
+    /// [`ConfigReader`] reads one with other defaults, another folder or other limits.
     ///
     /// # Errors
     /// Returns the first fault of the text, see [`ConfigError`].
     pub fn from_yaml(text: &str, file_name: &str) -> Result<Self, ConfigError> {
-        Self::default().overlay_yaml(text, file_name)
-    }
-
-    /// Reads a configuration whose missing keys have the values of `self` instead of the documented defaults.
-    ///
-    /// ```
-    /// use babybench::config::Compat;
-    /// use babybench::Config;
-    ///
-    /// let base = Config { compat: Compat::Reference, ..Config::default() };
-    /// let config = base.overlay_yaml("touch_function: normal_force\n", "recorded.yml")?;
-    /// assert_eq!(config.compat, Compat::Reference);
-    /// # Ok::<(), babybench::config::ConfigError>(())
-    /// ```
-    ///
-    /// # Errors
-    /// Fails like [`Config::from_yaml`].
-    pub fn overlay_yaml(self, text: &str, file_name: &str) -> Result<Self, ConfigError> {
-        self.overlay_yaml_with(text, file_name, &Limits::default())
-    }
-
-    /// Reads a configuration as [`Config::overlay_yaml`] does, of at most [`Limits::config_bytes`].
-    ///
-    /// # Errors
-    /// Fails like [`Config::from_yaml`].
-    pub fn overlay_yaml_with(self, text: &str, file_name: &str, limits: &Limits) -> Result<Self, ConfigError> {
-        self.overlay_yaml_in(text, file_name, Path::new(""), limits)
-    }
-
-    /// Reads a configuration as [`Config::overlay_yaml_with`] does; the path of a scene in it starts at `folder`, as if the text were a
-    /// file there.
-    ///
-    /// # Errors
-    /// Fails like [`Config::from_yaml`], and if the name of the folder is needed and is not UTF-8.
-    pub fn overlay_yaml_in(
-        mut self,
-        text: &str,
-        file_name: &str,
-        folder: &Path,
-        limits: &Limits,
-    ) -> Result<Self, ConfigError> {
-        let limit = limits.config_bytes;
-        if text.len() > limit {
-            let location = Location {
-                file: file_name.to_string(),
-                position: None,
-            };
-            return Err(ConfigError::TooLarge { location, limit });
-        }
-        let before = self.behavior;
-        let positions = yaml::read(text, file_name, &mut self)?;
-        if self.behavior != before {
-            self.take_defaults(|key| positions[key].is_some());
-        }
-        let position = |name: &str| {
-            let index = table::KEYS.iter().position(|key| key.name == name)?;
-            positions[index]
-        };
-        if let Some(given) = position("scene") {
-            let Some(scene) = self.scene.starting_at(folder) else {
-                return Err(ConfigError::Conflict {
-                    location: Location {
-                        file: file_name.to_string(),
-                        position: Some(given),
-                    },
-                    key: "scene",
-                    value: self.scene.to_string(),
-                    reason: "the folder of the configuration, where it starts, has a name that is not UTF-8; rename the folder"
-                        .to_string(),
-                });
-            };
-            self.scene = scene;
-        }
-        self.check(file_name, position)?;
-        Ok(self)
+        ConfigReader::default().read_text(text, file_name)
     }
 
     /// Reads a configuration file. The path of a scene in it starts at the file's folder.
@@ -150,54 +76,7 @@ impl Config {
     /// # Errors
     /// Fails like [`Config::from_yaml`], and if the file cannot be read or is not UTF-8.
     pub fn from_file(path: impl AsRef<Path>) -> Result<Self, ConfigError> {
-        Self::default().overlay_file(path)
-    }
-
-    /// Reads a configuration file whose missing keys have the values of `self`, as [`Config::overlay_yaml`] does.
-    ///
-    /// # Errors
-    /// Fails like [`Config::from_file`].
-    pub fn overlay_file(self, path: impl AsRef<Path>) -> Result<Self, ConfigError> {
-        self.overlay_file_with(path, &Limits::default())
-    }
-
-    /// Reads a configuration file as [`Config::overlay_file`] does, of at most [`Limits::config_bytes`].
-    ///
-    /// # Errors
-    /// As [`Config::from_file`].
-    pub fn overlay_file_with(self, path: impl AsRef<Path>, limits: &Limits) -> Result<Self, ConfigError> {
-        let file = path.as_ref().display().to_string();
-        let limit = limits.config_bytes;
-        let bytes = match files::read(path.as_ref(), limit as u64) {
-            Ok(bytes) => bytes,
-            Err(e) if e.kind() == std::io::ErrorKind::FileTooLarge => {
-                let location = Location { file, position: None };
-                return Err(ConfigError::TooLarge { location, limit });
-            }
-            Err(source) => return Err(ConfigError::Read { file, source }),
-        };
-        match std::str::from_utf8(&bytes) {
-            Ok(text) => {
-                let folder = path.as_ref().parent().unwrap_or(Path::new(""));
-                self.overlay_yaml_in(text, &file, folder, limits)
-            }
-            Err(error) => {
-                // the column counts characters, as editors do, not bytes
-                let good = &bytes[..error.valid_up_to()];
-                let line = 1 + good.iter().filter(|byte| **byte == b'\n').count() as u32;
-                let column = 1 + String::from_utf8_lossy(good)
-                    .chars()
-                    .rev()
-                    .take_while(|c| *c != '\n')
-                    .count() as u32;
-                Err(ConfigError::Encoding {
-                    location: Location {
-                        file,
-                        position: Some((line, column)),
-                    },
-                })
-            }
-        }
+        ConfigReader::default().read_file(path)
     }
 
     /// Writes the configuration as a documented file that loads back equal.

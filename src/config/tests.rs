@@ -8,6 +8,7 @@ use testkit::Rng;
 use testkit::mutation::mutate_text;
 
 use super::*;
+use crate::limits::Limits;
 
 /// The default of [`Limits::config_bytes`].
 const CONFIG_BYTES: usize = 1 << 20;
@@ -283,13 +284,17 @@ fn files_are_read_within_the_limit_and_as_utf_8() {
         read(&vec![b'#'; CONFIG_BYTES + 1]),
         Err(ConfigError::TooLarge { .. })
     ));
-    let few = Limits {
+    let limits = Limits {
         config_bytes: 11,
         ..Limits::default()
     };
+    let reader = ConfigReader {
+        limits,
+        ..ConfigReader::default()
+    };
     std::fs::write(&path, "scene: crib").unwrap();
-    assert!(Config::default().overlay_file_with(&path, &few).is_ok());
-    let error = Config::default().overlay_yaml_with("scene: cubes", "c.yml", &few);
+    assert!(reader.clone().read_file(&path).is_ok());
+    let error = reader.read_text("scene: cubes", "c.yml");
     assert!(matches!(error, Err(ConfigError::TooLarge { limit: 11, .. })));
     std::fs::remove_dir_all(&folder).unwrap();
     let error = Config::from_file(&path).unwrap_err();

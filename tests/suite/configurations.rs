@@ -2,7 +2,7 @@
 
 use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 
-use babybench::config::{ActuationModel, Behavior, BodyParts, Compat, Part, Scene};
+use babybench::config::{ActuationModel, Behavior, BodyParts, Compat, ConfigReader, Part, Scene};
 use babybench::spaces::Dtype;
 use babybench::{Config, Env};
 use testkit::Rng;
@@ -296,9 +296,8 @@ fn no_key_is_without_effect() {
         let of_age = key.section == "Growth" && name != "age" || name == "delay_by_age";
         let (base, before) = if of_age { (&infant, grown) } else { (&base, original) };
         for value in values {
-            let config = base
-                .clone()
-                .overlay_yaml(&format!("{name}: {value}\n"), "test")
+            let config = ConfigReader::over(base.clone())
+                .read_text(&format!("{name}: {value}\n"), "test")
                 .expect("allowed");
             assert_ne!(config, *base, "{name}: {value} is another configuration");
             assert_ne!(trace(config), before, "{name}: {value} changes nothing");
@@ -313,8 +312,8 @@ fn no_key_is_without_effect() {
 fn measurements_of_nobody_name_their_keys() {
     let refused = |text: &str, parts: &[&str]| {
         let config = free(Behavior::SelfTouch, Scene::Crib);
-        let config = config
-            .overlay_yaml(&format!("age: 6\n{text}"), "test")
+        let config = ConfigReader::over(config)
+            .read_text(&format!("age: 6\n{text}"), "test")
             .expect("each by itself is allowed");
         let error = Env::new(config).expect_err(text).to_string();
         println!("{error}");

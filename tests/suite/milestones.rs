@@ -1,6 +1,8 @@
 //! Tests that MIMo, with the strength and springs of infants, does what infants of his age can do.
 
-use babybench::config::{ActuationModel, Behavior, Compat, Proportions, Scene, SpringModel, StrengthModel};
+use babybench::config::{
+    ActuationModel, Behavior, Compat, ConfigReader, Proportions, Scene, SpringModel, StrengthModel,
+};
 use babybench::mimo::{BodyFigures, Version, embedded, strength_table};
 use babybench::{Config, Env};
 
@@ -109,7 +111,7 @@ fn factors_change_one_group_of_joints() {
             age: Some(3.0),
             ..free(Behavior::HandRegard, Scene::Base)
         };
-        let config = config.overlay_yaml(text, "test").expect("allowed");
+        let config = ConfigReader::over(config).read_text(text, "test").expect("allowed");
         let made = blueprint(config);
         let model = made.model();
         (model.actuator_name.clone(), model.actuator_gear.clone())

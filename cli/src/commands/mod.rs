@@ -29,7 +29,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use babybench::assets::{AssetSource, DirAssets};
-use babybench::config::{Compat, Config, ConfigError, Example, RendererKind};
+use babybench::config::{Compat, Config, ConfigError, ConfigReader, Example, RendererKind};
 use babybench::env::BlueprintOptions;
 use babybench::formats::npz::Npz;
 use babybench::mimo::embedded;
@@ -103,10 +103,11 @@ struct Source {
 
 /// Reads a configuration whose missing keys have the values of `base`: a file, or the example of that name if there is no such file.
 fn read_over(base: Config, path: &Path) -> Result<Config, ConfigError> {
+    let reader = ConfigReader::over(base);
     let mut examples = Example::ALL.into_iter().chain(Example::TASKS);
     match examples.find(|example| path == Path::new(example.name)) {
-        Some(example) if !path.exists() => base.overlay_yaml(example.yaml, example.name),
-        _ => base.overlay_file(path),
+        Some(example) if !path.exists() => reader.read_text(example.yaml, example.name),
+        _ => reader.read_file(path),
     }
 }
 

@@ -1,6 +1,6 @@
 //! The recordings themselves: every archive and every configuration is read whole.
 
-use babybench::config::{Compat, Config};
+use babybench::config::{Compat, Config, ConfigReader};
 use conformance::data;
 use testkit::harness::Trial;
 use testkit::{show, trials};
@@ -41,8 +41,8 @@ fn configurations_of_the_recordings_load() {
             compat: Compat::Reference,
             ..Config::default()
         };
-        let config = base
-            .overlay_yaml(&data::text(&format!("recordings/{name}.yml")), &name)
+        let config = ConfigReader::over(base)
+            .read_text(&data::text(&format!("recordings/{name}.yml")), &name)
             .unwrap_or_else(|e| panic!("{e}"));
         let again = Config::from_yaml(&config.to_yaml(), &name).expect("what is written is read");
         assert_eq!(again, config, "{name}");
