@@ -7,7 +7,7 @@
 
 use std::io::{Seek, SeekFrom, Write};
 
-use jpeg_encoder::{ColorType, Encoder, SamplingFactor};
+use super::jpeg::{ColorResolution, write_jpeg};
 
 /// Quality of the frames, 1 to 100; colours are stored in full resolution (4:4:4).
 pub const DEFAULT_QUALITY: u8 = 92;
@@ -127,11 +127,9 @@ impl<W: Write + Seek> AviWriter<W> {
             });
         }
         self.jpeg.clear();
-        let mut encoder = Encoder::new(&mut self.jpeg, self.quality);
-        encoder.set_sampling_factor(SamplingFactor::R_4_4_4);
         // `new` has checked that the size fits
-        encoder
-            .encode(rgb, self.width as u16, self.height as u16, ColorType::Rgb)
+        let size = [self.width as u16, self.height as u16];
+        write_jpeg(&mut self.jpeg, rgb, size, self.quality, ColorResolution::Full)
             .map_err(|e| AviError::Encode(e.to_string()))?;
         let size = self.jpeg.len() as u32;
         // RIFF chunks begin at even places

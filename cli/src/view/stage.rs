@@ -2,9 +2,9 @@
 
 use babybench::Env;
 use babybench::env::EnvError;
+use babybench::formats::jpeg::{ColorResolution, write_jpeg};
 use babybench::math::{Vec3, add, add_scaled, mat_vec, row};
 use babybench::render::{ImageBuffers, Poses, RenderRequest, Renderer, View};
-use jpeg_encoder::{ColorType, Encoder};
 use serde_json::json;
 
 use super::orbit::{Lens, Orbit};
@@ -201,8 +201,8 @@ impl Stage {
         });
         let mut out = said.to_string().into_bytes();
         out.push(b'\n');
-        let [wide, high] = [u16::try_from(width)?, u16::try_from(height)?];
-        Encoder::new(&mut out, QUALITY).encode(&rgb, wide, high, ColorType::Rgb)?;
+        let size = [u16::try_from(width)?, u16::try_from(height)?];
+        write_jpeg(&mut out, &rgb, size, QUALITY, ColorResolution::ByQuality)?;
         (self.rgb, self.depths) = (rgb, depths);
         Ok(out)
     }
