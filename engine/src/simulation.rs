@@ -25,7 +25,6 @@ use mjcf_sim_render::{FreeCamera, Poses, RenderError, RenderRequest, Renderer, S
 /// assert!((ball.state.qvel[2] + 9.81 * 0.2).abs() < 1e-9);
 /// # Ok::<(), mjcf_sim::SimulationError>(())
 /// ```
-#[doc(alias("mjModel", "mjData"))]
 pub struct Simulation {
     /// Everything that changes while the scene runs, under MuJoCo's names: write `ctrl`, `qpos`, `xfrc_applied`; read `sensordata`,
     /// `xpos`, `contact`.
@@ -99,7 +98,9 @@ impl fmt::Debug for Simulation {
 }
 
 impl Simulation {
-    /// Loads an MJCF document. Included files, meshes and textures are found beside it.
+    /// Loads an MJCF document with the default [`Limits`](crate::Limits). Files that it names start at its folder, as in MuJoCo, and may lie
+    /// above it (`../`) or anywhere (absolute paths). For documents of strangers use [`DirAssets`](crate::assets::DirAssets), which stays
+    /// within its folder, with [`mjcf_loader::load`](crate::mjcf_loader::load()) and [`Simulation::new`].
     ///
     /// # Errors
     /// A file that is missing or too large; a document that is not understood or cannot be compiled, with its place.
@@ -109,7 +110,8 @@ impl Simulation {
         Ok(Self::new(Arc::new(model), Arc::new(assets)))
     }
 
-    /// Loads an MJCF document from text; it has no other files.
+    /// Loads an MJCF document from text with the default [`Limits`](crate::Limits); it has no other files. [`Simulation::new`] shows one with
+    /// meshes in memory.
     ///
     /// # Errors
     /// A document that is not understood or cannot be compiled, with its place.
@@ -119,15 +121,44 @@ impl Simulation {
         Ok(Self::new(Arc::new(model), Arc::new(assets)))
     }
 
-    /// Simulates a compiled model; `assets` has the files that its document named.
+    /// Simulates a compiled model with the default [`SoftOptions`]; `assets` has the files that its document named.
+    ///
+    /// ```
+    /// use std::sync::Arc;
+    ///
+    /// use mjcf_sim::assets::MemoryAssets;
+    /// use mjcf_sim::mjcf_loader::load_str;
+    /// use mjcf_sim::{Simulation, physics};
+    ///
+    /// let text = r#"<mujoco><asset><mesh name="tetrahedron" file="t.obj"/></asset>
+    ///   <worldbody><body><freejoint/><geom type="mesh" mesh="tetrahedron"/></body></worldbody></mujoco>"#;
+    /// let mut assets = MemoryAssets::new();
+    /// assets.insert("t.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n")?;
+    /// let model = physics::compile(load_str(text, "model.xml", &assets)?)?;
+    /// let scene = Simulation::new(Arc::new(model), Arc::new(assets));
+    /// assert!((scene.model().body_mass[1] - 1000.0 / 6.0).abs() < 1e-9, "a sixth of a cubic metre of water");
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn new(model: Arc<Model>, assets: Arc<dyn AssetSource>) -> Self {
-        let engine = SoftEngine::new(model, SoftOptions::default());
+        Self::with_options(model, assets, SoftOptions::default())
+    }
+
+    /// Simulates a compiled model with options of the engine, such as forces on bodies in every step
+    /// ([`SoftOptions::post_constraint`]).
+    pub fn with_options(model: Arc<Model>, assets: Arc<dyn AssetSource>, options: SoftOptions) -> Self {
+        let engine = SoftEngine::new(model, options);
         Self {
             state: engine.new_state(),
             engine,
             assets,
             renderer: None,
         }
+    }
+
+    /// Returns the engine, for what it computes on request: [`full_m`](crate::physics::Engine::full_m),
+    /// [`efc_j`](crate::physics::Engine::efc_j).
+    pub fn engine(&self) -> &SoftEngine {
+        &self.engine
     }
 
     /// Returns the compiled model.

@@ -38,7 +38,7 @@ pub(super) const UNREAD: &str =
 
 /// An error of a document, with its location.
 ///
-/// Prints as `babybench/mimo_v1.xml:12:5: mujoco/body/geom: unknown attribute "foo"`.
+/// Prints as `arm.xml:12:5: mujoco/worldbody/body/geom: unknown attribute "foo"`.
 #[derive(Debug, thiserror::Error)]
 #[error("{place}: {kind}")]
 pub struct LoadError {

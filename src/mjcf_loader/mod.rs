@@ -4,8 +4,8 @@
 //! classes applied and references by name, and the [`Spec`] with MuJoCo 3.3.0's ids and units. Nothing here knows
 //! physics: quantities that need dynamics (`*_invweight0`, statistics, poses of welds at `qpos0`) come with the last step.
 //!
-//! The loader understands MuJoCo 3.3.0's language except for deformable bodies, plugins and a few elements; [`elements`] and
-//! `babybench inspect --mjcf` list all elements and attributes. Everything else is an error that names the place. Ignored are only the
+//! The loader understands MuJoCo 3.3.0's language except for deformable bodies, plugins and a few elements; [`elements`]
+//! lists all elements and attributes. Everything else is an error that names the place. Ignored are only the
 //! memory reservations in `size`, the matrix format `jacobian`, and the colours and sizes in `visual` of decorations in MuJoCo's viewer:
 //! none changes a compiled array of physics. User data (`user`, `nuser_*`) are kept for programs.
 //!

@@ -35,6 +35,7 @@ macro_rules! lookup {
     ($($fun:ident $field:ident $what:literal),* $(,)?) => {
         impl Arrays {$(
             #[doc = concat!("Returns the id of the ", $what, " called `name`.")]
+            #[doc(alias = "mj_name2id")]
             pub fn $fun(&self, name: &str) -> Option<usize> {
                 self.$field.iter().position(|n| n == name)
             }

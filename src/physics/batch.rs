@@ -101,6 +101,7 @@ impl Batch {
     }
 
     /// Steps every state `steps` times. Before each step of a state `control` is called with its index, the number of the step, and the state.
+    /// Sensors, contacts and poses are afterwards those of the start of the last step; [`Engine::forward`](crate::Engine::forward) computes those of its end.
     ///
     /// # Errors
     /// The first state that could not be stepped, which `control` has made unfit or which diverges; the others were stepped to the end.

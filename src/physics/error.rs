@@ -68,7 +68,7 @@ pub enum EngineError {
         value: f64,
     },
     /// An engine has the parameters of the model built in.
-    #[error("the engine cannot change params.{what}: use SoftEngine (engine: soft)")]
+    #[error("the engine cannot change params.{what}: use SoftEngine")]
     FixedParameter {
         /// Field of the parameters.
         what: &'static str,

@@ -2,7 +2,7 @@
 
 use crate::constraint::{Efc, EfcRow};
 use crate::error::EngineError;
-use crate::math::{MAT3_ID, Mat3, QUAT_ID, Quat, Vec3, add, cross, sub};
+use crate::math::{MAT3_ID, Mat3, QUAT_ID, Quat, Vec3, add, cross, mat_t_vec, sub};
 use crate::model::Arrays;
 use crate::params::Params;
 use crate::shared::Shared;
@@ -44,9 +44,17 @@ pub struct Contact {
     pub force: [f64; 6],
 }
 
+impl Contact {
+    /// Returns the force that the first geom exerts on the second, N, world frame; the negative acts on the first.
+    pub fn world_force(&self) -> Vec3 {
+        mat_t_vec(&self.frame, [self.force[0], self.force[1], self.force[2]])
+    }
+}
+
 table! {
     |model: &Arrays, topology: &Topology|
-    /// Everything that changes while a scene runs, and every quantity computed from it: MuJoCo's `mjData`.
+    /// Everything that changes while a scene runs, and every quantity computed from it: MuJoCo's `mjData`. Fields for the muscles of MIMo,
+    /// the infant of BabyBench, are empty in other models.
     ///
     /// The fields up to `params` decide how a run goes on, with any engine and any actuation model: a copy of them
     /// ([`State::copy_dynamic_from`]) continues with the same bits. A step advances `qpos` and `qvel`; all computed
@@ -58,6 +66,7 @@ table! {
     ///
     /// Constraint rows are read with [`State::efc_rows`], their Jacobian and the inertia matrix with
     /// [`Engine::efc_j`](crate::Engine::efc_j) and [`Engine::full_m`](crate::Engine::full_m).
+    #[doc(alias = "mjData")]
     #[derive(Debug)]
     pub struct State, "";
     dynamic {
