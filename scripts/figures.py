@@ -22,7 +22,7 @@ def text(path: str) -> str:
 
 
 def fault(figure: dict[str, str]) -> str | None:
-    """Returns what is wrong with a figure, if something is."""
+    """Returns the fault of a figure, or None."""
     page, quote, source, value = (figure[key] for key in ("page", "quote", "source", "value"))
     for path in (page, source.partition("*")[0]):
         if not (ROOT / path).exists():

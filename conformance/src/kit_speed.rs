@@ -199,7 +199,7 @@ impl KitEnv {
     }
 }
 
-/// The file in the temporary folder that takes what the process says.
+/// The file in the temporary folder that receives the output of the process.
 const SAID: &str = "stderr.txt";
 
 impl Drop for KitEnv {

@@ -56,7 +56,7 @@ impl LastEngineCall {
         self.qacc_warmstart.clone_from(&state.qacc_warmstart);
     }
 
-    /// Makes the call once more. A state that is as the call left it then has the same computed quantities.
+    /// Repeats the call. If nothing has changed the state since the call, its computed quantities are the same again.
     fn repeat(&self, engines: &Engines, state: &mut State) {
         if let EngineCall::None = self.call {
             return;

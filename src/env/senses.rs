@@ -334,7 +334,7 @@ impl Senses {
         }
     }
 
-    /// Begins a step, with which a picture that was not requested is lost. If both eyes are drawn next, it wakes the thread that draws the
+    /// Begins a step, which discards a picture that was not requested. If both eyes are drawn next, it wakes the thread that draws the
     /// second one.
     pub(super) fn begin_step(&mut self) {
         self.forget_picture();

@@ -133,7 +133,7 @@ impl Inspect {
     }
 }
 
-/// Writes what the scene is and how much of everything it has.
+/// Writes the name of the scene and the numbers of its elements.
 fn write_sizes(out: &mut impl Write, env: &Env) -> io::Result<()> {
     let (config, model) = (env.config(), env.model());
     writeln!(

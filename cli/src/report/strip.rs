@@ -11,7 +11,7 @@ use babybench::runs::logs::EvaluationLog;
 const FRAMES: usize = 8;
 /// Largest frame, bytes.
 const MAX_FRAME: u32 = 4 << 20;
-/// Maximum number of chunks of a video that are looked at.
+/// Maximum number of chunks of a video that are read.
 const MAX_CHUNKS: usize = 1 << 20;
 
 /// A moment of an episode.

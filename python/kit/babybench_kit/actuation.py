@@ -106,7 +106,7 @@ class EngineActuation(ActuationModel):
     @classmethod
     def _refuse(cls, name: str) -> NoReturn:
         raise AttributeError(
-            f"{cls.__name__}.{name} is another one than MIMo's: the engine computes this actuation model and takes no other "
+            f"{cls.__name__}.{name} differs from MIMo's: the engine computes this actuation model and takes no other "
             "value; write a subclass of ActuationModel that sets env.data.ctrl in action() and substep_update()"
         )
 

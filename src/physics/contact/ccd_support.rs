@@ -78,8 +78,8 @@ impl Support for CcdSupport<'_> {
     }
 }
 
-/// Finds the contact of two convex geoms by MPR; `corners` are those of their hulls from which farthest points are looked for, and become
-/// the last ones found.
+/// Finds the contact of two convex geoms by MPR. The searches for farthest points start at `corners` of the two hulls, and leave there the
+/// last ones found.
 pub(super) fn convex(
     a: &PlacedGeom,
     b: &PlacedGeom,

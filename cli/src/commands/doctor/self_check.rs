@@ -10,7 +10,7 @@ use babybench::{Blueprint, Env};
 
 /// What `examples/checksum` prints: a configuration, random steps from seed 0, and the checksum after them.
 const TABLE: &str = include_str!("checksums.txt");
-/// A slow machine compares what it computes in this time.
+/// The longest time of the check: a slow machine compares as many lines as it can compute in it.
 const LONGEST: Duration = Duration::from_secs(10);
 
 /// The result of a self-check.

@@ -165,7 +165,7 @@ impl Writer<'_> {
         terrain
     }
 
-    /// Returns the name of a mesh: of one that is there, or of a new one, rings of vertices between two tips.
+    /// Returns the name of a mesh: an existing one, or a new one made of rings of vertices between two tips.
     pub(super) fn mesh(&mut self) -> String {
         if !self.meshes.is_empty() && self.dice.chance(0.3) {
             let k = self.dice.rng.usize(..self.meshes.len());

@@ -39,7 +39,7 @@ fn wedge(a: [f32; 2], b: [f32; 2]) -> f32 {
     a[0] * b[1] - a[1] * b[0]
 }
 
-/// Drops the coordinate along which the first real corner is seen best.
+/// Drops the coordinate axis nearest to the normal of the first corner that is not flat.
 fn project(vert: &[[f32; 3]], corners: &[u32]) -> Vec<[f32; 2]> {
     let count = corners.len();
     let at = |k: usize| vert.get(corners[k % count] as usize).copied().unwrap_or_default();

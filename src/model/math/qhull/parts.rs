@@ -97,7 +97,7 @@ pub(super) struct Facet {
     /// Whether the vertices wind one way or the other.
     pub(super) top: bool,
     pub(super) simplicial: bool,
-    /// In the new point's sight, or to be removed for another reason.
+    /// Visible from the new point, or to be removed for another reason.
     pub(super) visible: bool,
     pub(super) new: bool,
     /// Was merged since vertices were last reduced.

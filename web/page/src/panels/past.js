@@ -1,7 +1,7 @@
 // The line of time: back through the last half minute, or through a recording that plays, and on from there.
 import { $ } from "../dom.js";
 
-/** Seconds that the arrow keys move, and that a page does. */
+/** Seconds by which the arrow keys move, and Page Up and Page Down. */
 const [ARROW, PAGE] = [0.1, 2];
 
 /** @type {Record<string, number>} */

@@ -42,7 +42,7 @@ function eyes(app, event, title) {
 const SOMETHING = 30;
 
 /**
- * Whether there is nothing to see in pictures, RGBA.
+ * Returns whether a picture, RGBA, shows nothing.
  * @param {Uint8ClampedArray} pixels
  */
 function plain(pixels) {

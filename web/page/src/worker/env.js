@@ -181,7 +181,7 @@ export class PageEnv {
   }
 
   /**
-   * What the eyes notice, as sharp and as late as the configuration says.
+   * The pictures that the eyes report, with the sharpness and the delay of the configuration.
    * @returns {import("../types").Glance}
    */
   eyes() {
