@@ -31,8 +31,9 @@ from babybench_core.mujoco.functions import *  # noqa: F403
 from babybench_core.mujoco.installing import install, uninstall
 from babybench_core.mujoco.jacobians import *  # noqa: F403
 from babybench_core.mujoco.maths import *  # noqa: F403
-from babybench_core.mujoco.model import MjModel, MjOption
+from babybench_core.mujoco.model import MjModel
 from babybench_core.mujoco.more_enums import *  # noqa: F403
+from babybench_core.mujoco.options import MjOption
 from babybench_core.mujoco.renderer import MjvCamera, Renderer, mjv_defaultCamera, mjv_defaultFreeCamera
 
 stands_in = True

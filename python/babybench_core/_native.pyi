@@ -36,10 +36,13 @@ __all__ = [
     "config_keys",
     "embedded_files",
     "measure_record",
+    "model_columns",
     "model_extras",
+    "paint",
     "play_senses",
     "replay_record",
     "scene_file",
+    "set_equalities",
     "write_video",
 ]
 
@@ -372,9 +375,9 @@ class View:
 class Watch:
     """Arrays that a program may write to, and what was in them."""
 
-    def __new__(cls, arrays: Sequence[_Floats]) -> Watch:
+    def __new__(cls, arrays: Sequence[_Array]) -> Watch:
         """Stores the contents of the arrays."""
-    def changed(self, arrays: Sequence[_Floats]) -> list[int]:
+    def changed(self, arrays: Sequence[_Array]) -> list[int]:
         """Returns the numbers of those that differ, of the same arrays in the same order; the next call compares with these."""
 
 @final
@@ -398,6 +401,9 @@ class PhysicsModel:
     @property
     def layout(self) -> list[tuple[str, list[int]]]:
         """Names and shapes of the arrays in :attr:`memory`, in order."""
+    @property
+    def columns(self) -> dict[str, _Array]:
+        """Arrays of other types that a program may change: colours, groups, materials, lights, equalities, keyframes."""
     def array(self, name: str) -> _Array:
         """Returns a compiled array."""
     def names(self) -> dict[str, list[str]]:
@@ -680,6 +686,15 @@ def embedded_files() -> dict[str, bytes]:
 
 def model_extras(blueprint: Blueprint) -> dict[str, Any]:
     """Returns names of textures and materials, the number of lights, and MuJoCo's arrays of equality constraints."""
+
+def model_columns(env: Env) -> dict[str, _Array]:
+    """Returns fresh arrays of the look of an environment's model, and of its equalities and keyframes."""
+
+def paint(env: Env, looks: Mapping[str, npt.ArrayLike]) -> None:
+    """Changes the look of an environment's model at any time: whole arrays by name, as :func:`model_columns` returns them."""
+
+def set_equalities(env: Env, active: Sequence[bool]) -> None:
+    """Sets which equality constraints hold, now and in later episodes."""
 
 def write_video(
     path: str | os.PathLike[str], frames: Sequence[npt.NDArray[np.uint8]], frame_rate: float, width: int, height: int

@@ -18,9 +18,11 @@ mod model_change;
 mod noise;
 mod observation;
 mod parts;
+mod physics_columns;
 mod physics_data;
 mod physics_fields;
 mod physics_model;
+mod physics_options;
 mod pictures;
 mod record;
 mod recycled;
@@ -49,7 +51,7 @@ mod _native {
     #[pymodule_export]
     use super::env::Env;
     #[pymodule_export]
-    use super::model_change::Watch;
+    use super::model_change::{Watch, model_columns, paint, set_equalities};
     #[pymodule_export]
     use super::noise::ActionNoise;
     #[pymodule_export]

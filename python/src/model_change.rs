@@ -4,15 +4,18 @@ use std::collections::BTreeMap;
 
 use babybench::env::CHANGEABLE;
 use babybench::model::Arrays;
-use numpy::PyReadonlyArrayDyn;
-use pyo3::exceptions::{PyKeyError, PyValueError};
+use numpy::{Element, PyArrayDyn, PyArrayMethods, PyReadonlyArrayDyn};
+use pyo3::exceptions::{PyKeyError, PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use crate::arrays::{read, shaped};
+use crate::env::Env;
 use crate::errors::IntoException;
 use crate::model;
+use crate::physics_columns::{columns, write_columns};
 use crate::physics_fields::{Field, model_fields, model_fields_mut};
+use crate::pictures::Painters;
 
 /// Returns the name of a field of the table of a model's numbers.
 fn field_name(name: &str) -> String {
@@ -110,37 +113,111 @@ fn value<'py>(py: Python<'py>, env: &babybench::Env, name: &str) -> PyResult<Bou
     found.unwrap_or_else(|| Err(PyKeyError::new_err(format!("there is no array {name:?}"))))
 }
 
+/// Returns fresh arrays of the look of an environment's model, and of its equalities and keyframes.
+#[pyfunction]
+pub fn model_columns<'py>(py: Python<'py>, env: &Bound<'py, Env>) -> PyResult<Bound<'py, PyDict>> {
+    columns(py, env.get().guard()?.open()?.env.model())
+}
+
+/// Sets which equality constraints hold, now and in later episodes.
+#[pyfunction]
+pub fn set_equalities(env: &Bound<'_, Env>, active: Vec<bool>) -> PyResult<()> {
+    let mut guard = env.get().guard()?;
+    let changed = guard.open()?.env.model_mut().set_equalities(&active);
+    changed.map_err(IntoException::into_exception)
+}
+
+/// Changes the look of an environment's model: whole arrays by name.
+#[pyfunction]
+pub fn paint(env: &Bound<'_, Env>, looks: &Bound<'_, PyDict>) -> PyResult<()> {
+    let mut guard = env.get().guard()?;
+    let inner = guard.open()?;
+    let env = &mut inner.env;
+    let mut given = BTreeMap::new();
+    for (name, values) in looks {
+        let flat = values.call_method0("ravel")?.call_method1("astype", ("float64",))?;
+        given.insert(name.extract::<String>()?, flat.extract::<Vec<f64>>()?);
+    }
+    let mut fault = Ok(());
+    let painted = env.model_mut().paint(|arrays| {
+        let mut looked = arrays.clone();
+        fault = write_columns(&given, &mut looked);
+        if fault.is_ok() {
+            *arrays = looked;
+        }
+    });
+    fault?;
+    painted.map_err(IntoException::into_exception)?;
+    // the earlier ones would continue to draw the old look
+    inner.painters = Painters::default();
+    Ok(())
+}
+
+/// The numbers of an array, in the types that arrays of a model have.
+#[derive(PartialEq)]
+enum Numbers {
+    Double(Vec<f64>),
+    Single(Vec<f32>),
+    Whole(Vec<i32>),
+    Byte(Vec<u8>),
+}
+
+impl Numbers {
+    fn of(array: &Bound<'_, PyAny>) -> PyResult<Self> {
+        macro_rules! read {
+            ($($kind:ident $type:ty),*) => {$(
+                if let Ok(array) = array.cast::<PyArrayDyn<$type>>() {
+                    return Ok(Self::$kind(content(&array.try_readonly()?)?.to_vec()));
+                }
+            )*};
+        }
+        read!(Double f64, Single f32, Whole i32, Byte u8);
+        Err(PyTypeError::new_err("an array of a model has real numbers"))
+    }
+
+    /// Returns whether an array has these numbers.
+    fn same(&self, array: &Bound<'_, PyAny>) -> PyResult<bool> {
+        macro_rules! compare {
+            ($($kind:ident $type:ty),*) => {
+                match self {$(
+                    Self::$kind(seen) => {
+                        let array = array.cast::<PyArrayDyn<$type>>().map_err(|e| PyTypeError::new_err(e.to_string()))?;
+                        Ok(content(&array.try_readonly()?)? == &seen[..])
+                    }
+                )*}
+            };
+        }
+        compare!(Double f64, Single f32, Whole i32, Byte u8)
+    }
+}
+
 /// Arrays that a program may write to, and what was in them.
 #[pyclass(module = "babybench_core._native")]
 pub struct Watch {
-    seen: Vec<Vec<f64>>,
+    seen: Vec<Numbers>,
 }
 
 #[pymethods]
 impl Watch {
     #[new]
-    fn new(arrays: Vec<PyReadonlyArrayDyn<'_, f64>>) -> PyResult<Self> {
-        let seen = arrays.iter().map(|array| Ok(content(array)?.to_vec()));
-        Ok(Self {
-            seen: seen.collect::<PyResult<_>>()?,
-        })
+    fn new(arrays: Vec<Bound<'_, PyAny>>) -> PyResult<Self> {
+        let seen = arrays.iter().map(Numbers::of).collect::<PyResult<_>>()?;
+        Ok(Self { seen })
     }
 
     /// Returns which arrays have changed since the last call.
-    fn changed(&mut self, arrays: Vec<PyReadonlyArrayDyn<'_, f64>>) -> PyResult<Vec<usize>> {
+    fn changed(&mut self, arrays: Vec<Bound<'_, PyAny>>) -> PyResult<Vec<usize>> {
         let mut changed = Vec::new();
         for (k, (seen, array)) in self.seen.iter_mut().zip(&arrays).enumerate() {
-            let now = content(array)?;
-            if now != &seen[..] {
+            if !seen.same(array)? {
                 changed.push(k);
-                seen.clear();
-                seen.extend_from_slice(now);
+                *seen = Numbers::of(array)?;
             }
         }
         Ok(changed)
     }
 }
 
-fn content<'a>(array: &'a PyReadonlyArrayDyn<'_, f64>) -> PyResult<&'a [f64]> {
+fn content<'a, T: Element>(array: &'a PyReadonlyArrayDyn<'_, T>) -> PyResult<&'a [T]> {
     array.as_slice().map_err(|e| PyValueError::new_err(e.to_string()))
 }

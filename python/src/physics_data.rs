@@ -311,15 +311,29 @@ impl PhysicsData {
 /// Draws states of a model.
 #[pyclass(frozen, module = "babybench_core._native")]
 pub struct PhysicsRenderer {
-    renderer: Mutex<Renderer>,
+    renderer: Mutex<Drawing>,
+    model: Py<PhysicsModel>,
+    /// The textures of the materials when the renderer was made.
+    textures: Vec<Option<usize>>,
+}
+
+/// A renderer, and the number of the look that it draws.
+struct Drawing {
+    renderer: Renderer,
+    look: u64,
 }
 
 #[pymethods]
 impl PhysicsRenderer {
     #[new]
-    fn new(py: Python<'_>, model: &PhysicsModel) -> PyResult<Self> {
-        let renderer = Mutex::new(Renderer::cpu(model.scenery(py)?));
-        Ok(Self { renderer })
+    fn new(py: Python<'_>, model: Py<PhysicsModel>) -> PyResult<Self> {
+        let (scenery, look) = model.get().scenery(py, None)?;
+        let renderer = Renderer::cpu(scenery);
+        Ok(Self {
+            renderer: Mutex::new(Drawing { renderer, look }),
+            textures: model.get().textures(),
+            model,
+        })
     }
 
     /// Draws what the arrays of a state show, from a camera or from a free one (point, distance, azimuth, elevation): colours
@@ -349,6 +363,7 @@ impl PhysicsRenderer {
             height,
         };
         view.check().map_err(IntoException::into_exception)?;
+        let look = self.model.get().look(py)?;
         let guard = data.guard()?;
         let memory = data.memory.bind(py).try_readonly()?;
         let memory = memory.as_slice()?;
@@ -376,7 +391,12 @@ impl PhysicsRenderer {
         let mut guard_of_renderer = self.renderer.try_lock().map_err(|_| {
             PyRuntimeError::new_err("another thread is using the renderer: give each thread one of its own")
         })?;
-        let renderer = &mut *guard_of_renderer;
+        if guard_of_renderer.look != look {
+            let (scenery, look) = self.model.get().scenery(py, Some(&self.textures))?;
+            let renderer = Renderer::cpu(scenery);
+            *guard_of_renderer = Drawing { renderer, look };
+        }
+        let renderer = &mut guard_of_renderer.renderer;
         let request = [RenderRequest { poses, view }];
         let (mut rgb, mut depth, mut ids) = (Vec::new(), Vec::new(), Vec::new());
         let images = match what {

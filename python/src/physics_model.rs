@@ -7,11 +7,11 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use babybench::Model;
 use babybench::assets::{AssetSource, FileSystem};
 use babybench::mjcf_loader::{LoadError, load, load_str};
-use babybench::model::{Arrays, Flags, IntegratorType, Keyframe, SensorType, SolverType, Wrap};
+use babybench::model::{Arrays, Keyframe, SensorType, Wrap};
 use babybench::physics::{Params, SoftModel, SoftOptions, compile};
 use babybench::render::{RenderError, Scenery};
 use numpy::{PyArray1, PyArrayMethods};
-use pyo3::exceptions::{PyAttributeError, PyValueError};
+use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
@@ -19,7 +19,9 @@ use crate::arrays::ToArray;
 use crate::errors::{IntoException, detached};
 use crate::given_files::GivenFiles;
 use crate::model::{self, table};
+use crate::physics_columns::{Contents, Memory};
 use crate::physics_fields::{model_layout, read_model, write_model};
+use crate::physics_options::{settings, with_option};
 use crate::scene::extras;
 
 impl IntoException for LoadError {
@@ -45,7 +47,10 @@ struct Current {
     model: Arc<Model>,
     /// The numbers that the model was last made of.
     seen: Vec<f64>,
+    columns_seen: Contents,
     version: u64,
+    /// The number of changes of the look.
+    looks: u64,
     scenery: Option<Arc<Scenery>>,
 }
 
@@ -54,6 +59,7 @@ struct Current {
 pub struct PhysicsModel {
     current: Mutex<Current>,
     memory: Py<PyArray1<f64>>,
+    columns: Memory,
     assets: Arc<dyn AssetSource>,
 }
 
@@ -74,20 +80,23 @@ fn soft(model: &Arc<Model>) -> SoftModel {
 }
 
 impl PhysicsModel {
-    fn made(py: Python<'_>, model: Model, assets: Arc<dyn AssetSource>) -> Self {
+    fn made(py: Python<'_>, model: Model, assets: Arc<dyn AssetSource>) -> PyResult<Self> {
         let model = Arc::new(model);
-        let seen = write_model(&model);
-        Self {
+        let (seen, columns_seen) = (write_model(&model), Contents::of(&model));
+        Ok(Self {
             memory: PyArray1::from_slice(py, &seen).unbind(),
+            columns: Memory::new(py, &model, &columns_seen)?,
             current: Mutex::new(Current {
                 soft: soft(&model),
                 model,
                 seen,
+                columns_seen,
                 version: 0,
+                looks: 0,
                 scenery: None,
             }),
             assets,
-        }
+        })
     }
 
     fn current(&self) -> MutexGuard<'_, Current> {
@@ -130,6 +139,17 @@ impl PhysicsModel {
             current.seen = written.to_vec();
             current.replace(model);
         }
+        if let Some(written) = self.columns.changed(py, &current.columns_seen)? {
+            let mut fault = Ok(());
+            let model = current.model.edited(|arrays| {
+                fault = written.write(&current.columns_seen, arrays);
+            });
+            fault?;
+            current.columns_seen = written;
+            current.replace(model);
+            current.looks += 1;
+            current.scenery = None;
+        }
         let Current {
             soft, model, version, ..
         } = &*current;
@@ -140,18 +160,40 @@ impl PhysicsModel {
         })
     }
 
-    /// Returns what is drawn of the model.
-    pub fn scenery(&self, py: Python<'_>) -> PyResult<Arc<Scenery>> {
-        let (known, model) = {
+    /// Returns what is drawn of the model, and the number of its look. Textures that materials of the model have now are replaced by
+    /// `textures`, if there are any: MuJoCo reads them when a renderer is made.
+    pub fn scenery(&self, py: Python<'_>, textures: Option<&[Option<usize>]>) -> PyResult<(Arc<Scenery>, u64)> {
+        self.now(py)?;
+        let (known, model, looks) = {
             let current = self.current();
-            (current.scenery.clone(), current.model.clone())
+            (current.scenery.clone(), current.model.clone(), current.looks)
         };
-        if let Some(scenery) = known {
-            return Ok(scenery);
+        let same = textures.is_none_or(|given| model.materials.iter().map(|m| &m.texture).eq(given));
+        if let Some(scenery) = known.filter(|_| same) {
+            return Ok((scenery, looks));
+        }
+        if let Some(given) = textures.filter(|_| !same) {
+            let older = model.edited(|arrays| {
+                for (material, texture) in arrays.materials.iter_mut().zip(given) {
+                    material.texture = *texture;
+                }
+            });
+            return Ok((Arc::new(detached(py, || Scenery::new(&older, &*self.assets))?), looks));
         }
         let scenery = Arc::new(detached(py, || Scenery::new(&model, &*self.assets))?);
         self.current().scenery = Some(scenery.clone());
-        Ok(scenery)
+        Ok((scenery, looks))
+    }
+
+    /// Returns the number of the current look, with what a program has written.
+    pub fn look(&self, py: Python<'_>) -> PyResult<u64> {
+        self.now(py)?;
+        Ok(self.current().looks)
+    }
+
+    /// Returns the texture of each material.
+    pub fn textures(&self) -> Vec<Option<usize>> {
+        self.current().model.materials.iter().map(|m| m.texture).collect()
     }
 }
 
@@ -163,46 +205,6 @@ impl Current {
     }
 }
 
-/// The flags of a simulation in the order of MuJoCo's `mjtDisableBit`.
-fn flags(flags: &mut Flags) -> [&mut bool; 17] {
-    [
-        &mut flags.constraint,
-        &mut flags.equality,
-        &mut flags.frictionloss,
-        &mut flags.limit,
-        &mut flags.contact,
-        &mut flags.passive,
-        &mut flags.gravity,
-        &mut flags.clampctrl,
-        &mut flags.warmstart,
-        &mut flags.filterparent,
-        &mut flags.actuation,
-        &mut flags.refsafe,
-        &mut flags.sensor,
-        &mut flags.midphase,
-        &mut flags.eulerdamp,
-        &mut flags.autoreset,
-        &mut flags.nativeccd,
-    ]
-}
-
-/// The flags that are off by default, in the order of MuJoCo's `mjtEnableBit`, with the bit of the first. The bits around them are
-/// `override`, which is never on, and `island`, which documents alone set.
-fn enabled(flags: &mut Flags) -> (usize, [&mut bool; 4]) {
-    let flags = [
-        &mut flags.energy,
-        &mut flags.fwdinv,
-        &mut flags.invdiscrete,
-        &mut flags.multiccd,
-    ];
-    (1, flags)
-}
-
-/// Returns the bit of islands in MuJoCo's `mjtEnableBit`, if they are on.
-fn islands(flags: &Flags) -> usize {
-    usize::from(flags.island) << 5
-}
-
 #[pymethods]
 impl PhysicsModel {
     /// Compiles a file. Includes and textures are found as MuJoCo finds them.
@@ -211,7 +213,7 @@ impl PhysicsModel {
         let (assets, name) =
             FileSystem::beside(&path).map_err(|e| PyValueError::new_err(format!("{}: {e}", path.display())))?;
         let model = detached(py, || load(&assets, &name).and_then(compile))?;
-        Ok(Self::made(py, model, Arc::new(assets)))
+        Self::made(py, model, Arc::new(assets))
     }
 
     /// Compiles a text, with files that replace those in and around a folder that it names.
@@ -219,13 +221,13 @@ impl PhysicsModel {
     fn from_text(py: Python<'_>, text: &str, files: HashMap<String, Vec<u8>>, folder: PathBuf) -> PyResult<Self> {
         let assets = GivenFiles::new(files, folder)?;
         let model = detached(py, || load_str(text, "model.xml", &assets).and_then(compile))?;
-        Ok(Self::made(py, model, Arc::new(assets)))
+        Self::made(py, model, Arc::new(assets))
     }
 
     /// Returns a model of its own with the same numbers.
     fn copy(&self, py: Python<'_>) -> PyResult<Self> {
         let now = self.now(py)?;
-        Ok(Self::made(py, (*now.model).clone(), self.assets.clone()))
+        Self::made(py, (*now.model).clone(), self.assets.clone())
     }
 
     /// Returns the memory of the numbers that a program may change; steps read them.
@@ -238,6 +240,12 @@ impl PhysicsModel {
     #[getter]
     fn layout(&self) -> Vec<(&'static str, Vec<usize>)> {
         model_layout(&self.current().model)
+    }
+
+    /// Returns the arrays of other types that a program may change, by name: colours, groups, materials, lights, equalities, keyframes.
+    #[getter]
+    fn columns<'py>(&self, py: Python<'py>) -> Bound<'py, PyDict> {
+        self.columns.views(py)
     }
 
     #[classattr]
@@ -275,110 +283,13 @@ impl PhysicsModel {
 
     /// Returns sizes, options, statistics and visual settings that no array has.
     fn settings<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        let m = self.current().model.clone();
-        let settings = model::options(py, &m)?;
-        for (name, size) in [
-            ("nkey", m.nkey()),
-            ("nlight", m.lights.len()),
-            ("nexclude", m.exclude.len()),
-            ("nmesh", m.nmesh()),
-            ("nhfield", m.nhfield()),
-            ("nskin", m.nskin()),
-        ] {
-            settings.set_item(name, size)?;
-        }
-        let solver = match m.opt.solver {
-            SolverType::Pgs => 0,
-            SolverType::Cg => 1,
-            SolverType::Newton => 2,
-        };
-        let jacobian = m.opt.jacobian as u8;
-        let cone = m.opt.cone as u8;
-        let integrator = match m.opt.integrator {
-            IntegratorType::Euler => 0,
-            IntegratorType::Rk4 => 1,
-            IntegratorType::Implicit => 2,
-            IntegratorType::ImplicitFast => 3,
-        };
-        for (name, value) in [
-            ("solver", solver),
-            ("jacobian", jacobian),
-            ("cone", cone),
-            ("integrator", integrator),
-        ] {
-            settings.set_item(name, value)?;
-        }
-        let mut own = m.opt.flags.clone();
-        let bits = flags(&mut own)
-            .into_iter()
-            .enumerate()
-            .map(|(bit, on)| u32::from(!*on) << bit);
-        settings.set_item("disableflags", bits.sum::<u32>())?;
-        let (first, on) = enabled(&mut own);
-        let bits = on
-            .into_iter()
-            .enumerate()
-            .map(|(bit, on)| usize::from(*on) << (first + bit));
-        let bits: usize = bits.sum();
-        settings.set_item("enableflags", bits | islands(&own))?;
-        settings.set_item("noslip_iterations", m.opt.noslip_iterations)?;
-        settings.set_item("disableactuator", m.opt.disableactuator)?;
-        settings.set_item("nuserdata", m.nuserdata)?;
-        for (name, value) in [
-            ("meaninertia", m.stat.meaninertia),
-            ("meanmass", m.stat.meanmass),
-            ("meansize", m.stat.meansize),
-            ("fovy", m.vis.fovy),
-        ] {
-            settings.set_item(name, value)?;
-        }
-        settings.set_item("center", m.stat.center[..].to_array(py)?)?;
-        settings.set_item("offwidth", m.vis.offwidth)?;
-        settings.set_item("offheight", m.vis.offheight)?;
-        Ok(settings)
+        settings(py, &self.current().model.clone())
     }
 
     /// Sets a whole number among the options.
     fn set_option(&self, name: &str, value: i64) -> PyResult<()> {
-        let refused = || {
-            PyAttributeError::new_err(format!(
-                "opt.{name} cannot be {value} here: what can be set are iterations, ls_iterations, ccd_iterations and noslip_iterations (0 or more), \
-                 integrator (0 Euler, 1 RK4, 2 implicit, 3 implicitfast), disableflags (bits 0 to 16), enableflags (bits 1 to 4) and \
-                 disableactuator (bits 0 to 30); set others in the document"
-            ))
-        };
-        let count = usize::try_from(value).map_err(|_| refused())?;
         let mut current = self.current();
-        let mut known = true;
-        let model = current.model.edited(|arrays| {
-            let opt = &mut arrays.opt;
-            match (name, count) {
-                ("iterations", 0..=1_000_000) => opt.iterations = count,
-                ("ls_iterations", 0..=1_000_000) => opt.ls_iterations = count,
-                ("ccd_iterations", 0..=1_000_000) => opt.ccd_iterations = count,
-                ("integrator", 0) => opt.integrator = IntegratorType::Euler,
-                ("integrator", 1) => opt.integrator = IntegratorType::Rk4,
-                ("integrator", 2) => opt.integrator = IntegratorType::Implicit,
-                ("integrator", 3) => opt.integrator = IntegratorType::ImplicitFast,
-                ("noslip_iterations", 0..=1_000_000) => opt.noslip_iterations = count,
-                ("disableactuator", 0..0x8000_0000) => opt.disableactuator = count as u32,
-                ("enableflags", _) if count & !0b1_1110 == islands(&opt.flags) => {
-                    let (first, on) = enabled(&mut opt.flags);
-                    for (bit, on) in on.into_iter().enumerate() {
-                        *on = count >> (first + bit) & 1 == 1;
-                    }
-                }
-                ("disableflags", 0..0x2_0000) => {
-                    for (bit, on) in flags(&mut opt.flags).into_iter().enumerate() {
-                        *on = count >> bit & 1 == 0;
-                    }
-                }
-                _ => known = false,
-            }
-        });
-        if !known {
-            return Err(refused());
-        }
+        let model = with_option(&current.model, name, value)?;
         current.replace(model);
         Ok(())
     }
@@ -399,14 +310,7 @@ impl PhysicsModel {
         }
         rows! {
             "light_bodyid" lights bodyid "light_targetbodyid" lights targetbodyid "light_directional" lights directional
-            "light_castshadow" lights castshadow "light_active" lights active "light_pos" lights pos "light_dir" lights dir "light_pos0" lights pos0
-            "light_poscom0" lights poscom0 "light_dir0" lights dir0 "light_ambient" lights ambient "light_diffuse" lights diffuse
-            "light_specular" lights specular "light_attenuation" lights attenuation "light_cutoff" lights cutoff
-            "light_exponent" lights exponent
-            "mat_rgba" materials rgba "mat_specular" materials specular "mat_shininess" materials shininess
-            "mat_reflectance" materials reflectance "mat_emission" materials emission "mat_texrepeat" materials texrepeat
-            "mat_texuniform" materials texuniform
-            "key_time" keys time "key_qpos" keys qpos "key_qvel" keys qvel "key_act" keys act "key_ctrl" keys ctrl
+            "light_castshadow" lights castshadow "light_pos0" lights pos0 "light_poscom0" lights poscom0 "light_dir0" lights dir0
         }
         let poses = |of: fn(&Keyframe) -> &[f64]| PyArray1::from_iter(py, m.keys.iter().flat_map(of).copied());
         all.set_item("key_mpos", poses(|key| key.mpos.as_flattened()))?;

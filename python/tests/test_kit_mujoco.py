@@ -79,16 +79,17 @@ def test_forces_on_bodies_act(make: Make, held: bool) -> None:
     del data
 
 
-def test_colours_of_the_model_are_refused(make: Make) -> None:
+def test_colours_of_the_model_reach_the_pictures(make: Make) -> None:
     env = make().unwrapped
     env.reset()
-    for name in ("geom_rgba", "site_rgba"):
-        with pytest.raises((ValueError, AttributeError)):
-            getattr(env.model, name)[:] = 0.5
-    if not getattr(mujoco, "stands_in", False):
-        for name in ("mat_rgba", "mat_texid"):
-            with pytest.raises(ValueError, match="read-only"):
-                getattr(env.model, name)[:] = 0
+    before = env.mujoco_renderer.render("rgb_array")
+    env.model.geom_rgba[:, :3] = 0, 0, 1
+    env.model.mat_rgba[:, :3] = 0, 0, 1
+    after = env.mujoco_renderer.render("rgb_array")
+    assert not np.array_equal(before, after)
+    assert after[..., 2].mean() > 2 * after[..., 0].mean()
+    with pytest.raises((ValueError, AttributeError)):
+        env.model.geom_type[:] = 0
 
 
 @without

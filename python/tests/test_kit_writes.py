@@ -14,7 +14,7 @@ import mujoco
 
 pytestmark = pytest.mark.skipif(not getattr(mujoco, "stands_in", False), reason="MuJoCo's own arrays say less")
 
-FIXED = ("body_pos", "body_quat", "geom_rgba", "geom_group", "geom_pos", "cam_fovy", "cam_pos", "jnt_range", "site_pos")
+FIXED = ("body_ipos", "body_iquat", "jnt_axis", "jnt_pos", "geom_contype", "qpos0", "site_size", "actuator_gainprm")
 SCENE = """<mujoco>
   <option gravity="0 0 0" timestep="0.005" iterations="50" tolerance="1e-10" cone="elliptic" jacobian="dense"/>
   <compiler angle="degree" inertiafromgeom="true"/>
@@ -44,6 +44,72 @@ def test_writing_to_a_fixed_array_names_it(env: Any, name: str) -> None:
     with pytest.raises(AttributeError, match=name):
         setattr(env.model, name, before)
     assert np.array_equal(getattr(env.model, name), before)
+
+
+def test_poses_that_are_written_act(env: Any) -> None:
+    model, data = env.model, env.data
+    eye, hand = model.camera("eye_left").id, model.body("hip").id
+    before = np.array(data.cam_xpos[eye]), np.array(data.xpos[hand])
+    model.cam_pos[eye, 0] += 0.01
+    model.body_pos[hand, 2] += 0.05
+    mujoco.mj_forward(model, data)
+    assert np.linalg.norm(data.xpos[hand] - before[1]) == pytest.approx(0.05, abs=1e-3)
+    assert np.linalg.norm(data.cam_xpos[eye] - before[0]) > 0.03
+    env.step(np.zeros(env.action_space.shape))
+
+
+def test_pictures_follow_what_is_written(env: Any) -> None:
+    model, data = env.model, env.data
+    toy = model.geom_bodyid.tolist().index(model.body("toy").id)
+
+    def look() -> np.ndarray[Any, Any]:
+        return np.asarray(env.mujoco_renderer.render("rgb_array", camera_id=eye), float)
+
+    eye, state = model.camera("eye_left").id, np.array(data.qpos)
+    data.qpos[-7:-4] = data.cam_xpos[eye] - 0.3 * data.cam_xmat[eye].reshape(3, 3)[:, 2]
+    mujoco.mj_forward(model, data)
+    first = look()
+    model.geom_rgba[toy] = 1, 0, 0, 1
+    red = look()
+    assert red[..., 0].sum() > first[..., 0].sum()
+    assert red[..., 1].sum() < first[..., 1].sum()
+    model.cam_fovy[eye] /= 2
+    near = look()
+    assert (near - red).std() > 5
+    model.geom_group[toy] = 3
+    assert (look() - near).std() > 5
+    model.vis.headlight.ambient[:] = 1
+    assert np.isfinite(look()).all()
+    assert np.array_equal(data.qpos[:-7], state[:-7])
+    env.step(np.zeros(env.action_space.shape))
+    env.reset()
+    assert (look() - first).std() > 5
+
+
+def test_a_copy_looks_the_same(env: Any) -> None:
+    import copy
+
+    env.model.geom_rgba[3] = 1, 0, 0, 1
+    env.step(np.zeros(env.action_space.shape))
+    other = copy.deepcopy(env)
+    assert other.model.geom_rgba[3].tolist() == [1, 0, 0, 1]
+    for each in (env, other):
+        mujoco.mj_forward(each.model, each.data)  # a picture shows the start of the last physics step
+    pictures = [each.mujoco_renderer.render("rgb_array", camera_name="eye_left") for each in (env, other)]
+    assert np.array_equal(*pictures)
+    other.step(np.zeros(env.action_space.shape))
+
+
+def test_a_face_that_is_written_is_drawn(env: Any) -> None:
+    model = env.model
+    head = model.material("head").id
+    before = np.array(model.mat_texid[head])
+    assert before.tolist() == [-1, env.facial_expressions["default"], *[-1] * 8]
+    model.mat_texid[head, 1] = env.facial_expressions["angry"]
+    env.step(np.zeros(env.action_space.shape))
+    model.mat_texid[head, 1] = 99
+    with pytest.raises(ValueError, match="mat_texid"):
+        env.step(np.zeros(env.action_space.shape))
 
 
 def test_a_force_on_a_body_acts(env: Any) -> None:

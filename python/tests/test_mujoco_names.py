@@ -88,9 +88,9 @@ def test_a_model_comes_from_a_file_and_its_names_are_found(tmp_path: Path) -> No
         (lambda m, d: setattr(m.stat, "extent", 3.0), AttributeError, "model.stat.extent cannot be changed here"),
         (lambda m, d: m.jnt_axis.__setitem__(0, 1.0), ValueError, "model.jnt_axis cannot be changed here"),
         (
-            lambda m, d: np.multiply(m.geom_rgba, 2, out=m.geom_rgba),
+            lambda m, d: np.multiply(m.jnt_pos, 2, out=m.jnt_pos),
             ValueError,
-            "model.geom_rgba cannot be changed here",
+            "model.jnt_pos cannot be changed here",
         ),
         (lambda m, d: m.joint("shoulder").axis.fill(0), ValueError, "read-only"),
         (lambda m, d: setattr(m.opt, "integrator", 4), AttributeError, "opt.integrator cannot be 4 here"),

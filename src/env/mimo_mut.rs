@@ -1,6 +1,6 @@
 //! Changes of MIMo: locks, age and face.
 
-use super::{Env, EnvError};
+use super::{Blueprint, Env, EnvError};
 use crate::config::FacialExpression;
 use crate::mimo::{LockReport, LockTarget};
 
@@ -73,21 +73,8 @@ impl MimoMut<'_> {
         if env.config().facial_expression == face {
             return Ok(());
         }
-        let other = env.blueprint.with_facial_expression(face)?.env()?;
-        let (snapshot, ready, details) = (env.snapshot(), env.ready(), env.info.details.clone());
-        // a blueprint's pictures are shared, so another face needs another blueprint and with it another environment
-        let mut before = env.become_grown(other);
-        // only pictures differ, so the environment's own snapshot fits
-        env.restore(&snapshot)?;
-        if ready {
-            env.by_hand().resume(&snapshot)?;
-            env.info.details = details;
-            // a step senses the contacts of its last physics step, not those of its final state
-            if before.senses.known {
-                env.senses.take_felt(&mut before.senses);
-            }
-        }
-        Ok(())
+        let other = env.blueprint.with_facial_expression(face)?;
+        env.become_painted(&other)
     }
 }
 
@@ -100,6 +87,25 @@ impl Env {
     /// Makes an environment of the same configuration at another age.
     pub(crate) fn grown(&self, age: Option<f64>) -> Result<Self, EnvError> {
         self.blueprint.with_age(age)?.env()
+    }
+
+    /// Becomes an environment of a blueprint that differs in its pictures only. A blueprint's pictures are shared, so others need another
+    /// environment.
+    pub(super) fn become_painted(&mut self, blueprint: &Blueprint) -> Result<(), EnvError> {
+        let other = blueprint.env()?;
+        let (snapshot, ready, details) = (self.snapshot(), self.ready(), self.info.details.clone());
+        let mut before = self.become_grown(other);
+        // only pictures differ, so the environment's own snapshot fits
+        self.restore(&snapshot)?;
+        if ready {
+            self.by_hand().resume(&snapshot)?;
+            self.info.details = details;
+            // a step senses the contacts of its last physics step, not those of its final state
+            if before.senses.known {
+                self.senses.take_felt(&mut before.senses);
+            }
+        }
+        Ok(())
     }
 
     /// Becomes an environment of another age. Returns the previous one.

@@ -100,6 +100,17 @@ impl ModelChange {
     }
 }
 
+/// Gives arrays the look of others.
+fn restore_look(arrays: &mut Arrays, look: &Arrays) {
+    macro_rules! copy {
+        ($($field:ident)*) => {
+            $(arrays.$field.clone_from(&look.$field);)*
+        };
+    }
+    copy!(geom_rgba geom_group geom_matid site_rgba site_group site_matid tendon_rgba tendon_group tendon_matid);
+    copy!(materials lights cam_fovy vis);
+}
+
 /// Returns the arrays of a model with the values of its parameters.
 fn shown(model: &Model, params: &Params) -> Arrays {
     let mut arrays = Arrays::clone(model);
@@ -124,7 +135,7 @@ impl Env {
 
 impl ModelMut<'_> {
     /// Changes numbers of the model from the next step on, in this and in later episodes: gravity and timestep, mass, inertia, size,
-    /// friction, damping, stiffness, armature, gears, softness. It has the effect of writing into MuJoCo's `mjModel`: constants derived
+    /// poses, friction, damping, stiffness, armature, gears, softness. It has the effect of writing into MuJoCo's `mjModel`: constants derived
     /// from these numbers (`body_invweight0`, `dof_invweight0`, `geom_rbound`) keep their values unless the program writes them, too.
     ///
     /// A body whose mass or size a task has changed in an episode keeps the task's values until the episode ends. Snapshots of an
@@ -172,6 +183,49 @@ impl ModelMut<'_> {
         env.physics.use_engines(env.blueprint.engines());
         env.senses.use_tables(env.blueprint.tables());
         Ok(())
+    }
+
+    /// Sets which equality constraints hold (neq), now and in later episodes: MuJoCo's `eq_active0`, with `eq_active`.
+    ///
+    /// # Errors
+    /// [`ModelChangeError::Fixed`] for another number of constraints.
+    pub fn set_equalities(self, active: &[bool]) -> Result<(), EnvError> {
+        let physics = &mut self.env.physics;
+        physics.check_shape()?;
+        if active.len() != physics.base.eq_active.len() {
+            return Err(ModelChangeError::Fixed.into());
+        }
+        physics.base.eq_active.copy_from_slice(active);
+        physics.state_mut().params.eq_active.copy_from_slice(active);
+        Ok(())
+    }
+
+    /// Changes the look of the model at any time: colours, groups, materials, lights, fields of view and the settings of `<visual>`. The
+    /// next step has the same bits as without the change. Images of the eyes are redrawn. Snapshots fit environments with another look,
+    /// and [`MimoMut::set_age`](crate::env::MimoMut::set_age) rebuilds the model without the changes.
+    ///
+    /// ```
+    /// use babybench::{Config, Env};
+    ///
+    /// let mut env = Env::new(Config { touch_active: false, vision_active: false, ..Config::default() })?;
+    /// env.reset(Some(0))?;
+    /// env.model_mut().paint(|model| model.geom_rgba[0] = [1.0, 0.0, 0.0, 1.0])?;
+    /// assert!(env.model_mut().paint(|model| model.opt.timestep = 1.0).is_err());
+    /// # Ok::<(), babybench::EnvError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`ModelChangeError::Fixed`] for other changes, and textures that cannot be read. They change nothing.
+    pub fn paint(self, edit: impl FnOnce(&mut Arrays)) -> Result<(), EnvError> {
+        let env = self.env;
+        let painted = env.blueprint.model().edited(edit);
+        let mut rest = Arrays::clone(&painted);
+        let now: &Arrays = env.blueprint.model();
+        restore_look(&mut rest, now);
+        if rest != *now {
+            return Err(ModelChangeError::Fixed.into());
+        }
+        env.become_painted(&env.blueprint.with_look(painted)?)
     }
 
     /// Gives the model the numbers of the scene, but for those of `changes`, as [`Blueprint::changed_numbers`] returns them. Names that

@@ -216,6 +216,25 @@ impl EqualityKind {
         }
         data
     }
+
+    /// Takes a row of MuJoCo's `eq_data`. Numbers that MuJoCo does not read either, like the anchors of sites, are not kept.
+    pub fn set_data(&mut self, data: &[f64; 11]) {
+        let vector = |from: usize| [data[from], data[from + 1], data[from + 2]];
+        match self {
+            Self::Connect { anchor1, anchor2, .. } => (*anchor1, *anchor2) = (vector(0), vector(3)),
+            Self::Weld {
+                anchor,
+                relpos,
+                relquat,
+                torquescale,
+                ..
+            } => {
+                (*anchor, *relpos, *torquescale) = (vector(0), vector(3), data[10]);
+                relquat.copy_from_slice(&data[6..10]);
+            }
+            Self::Joint { polycoef, .. } | Self::Tendon { polycoef, .. } => polycoef.copy_from_slice(&data[..5]),
+        }
+    }
 }
 
 /// An object on the path of a tendon (MuJoCo's `mjtWrap`). A fixed tendon has joints only, a spatial one everything else.

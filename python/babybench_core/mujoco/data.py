@@ -10,7 +10,8 @@ from numpy.typing import NDArray
 from .. import _native
 from ..contacts import ContactList
 from ..named import KINDS, PREFIX, Named, accessor, span
-from .model import _MISSING, MjModel, matrix_places, views
+from .model import MjModel, matrix_places, views
+from .options import MISSING
 
 _BODY = (
     "xpos",
@@ -121,7 +122,7 @@ class MjData(Named):
             return self._own.rows()[name[4:]]
         if name in _COUNTED:
             return int(np.isin(self._own.rows()["type"], _COUNTED[name]).sum())
-        raise AttributeError(_MISSING.format(name=f"data.{name}"))
+        raise AttributeError(MISSING.format(name=f"data.{name}"))
 
     def __setattr__(self, name: str, value: Any) -> None:
         """Writes into an array."""
@@ -177,7 +178,7 @@ class MjData(Named):
             return arrays[name][number]
         elif name in ("xpos", "xmat") and kind in ("geom", "site", "camera"):
             return arrays[f"{PREFIX.get(kind, kind)}_{name}"][number]
-        raise AttributeError(_MISSING.format(name=f"data.{kind}(...).{name}"))
+        raise AttributeError(MISSING.format(name=f"data.{kind}(...).{name}"))
 
     def _compute(self, *groups: str) -> None:
         self._own.forward(sum(_native.PhysicsData.GROUPS[group] for group in groups))

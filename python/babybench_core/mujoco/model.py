@@ -11,12 +11,7 @@ from numpy.typing import NDArray
 
 from .. import _native
 from ..named import KINDS, PREFIX, Named, accessor, numbers, span
-
-_FIXED = (
-    "model.{name} cannot be changed here: change the document and make another model. What can be changed are the numbers that "
-    "steps read, as body_mass, geom_friction, jnt_stiffness, actuator_gainprm, opt.timestep and opt.gravity"
-)
-_MISSING = "{name}: babybench.mujoco does not have it; `pip install mujoco` and `import mujoco` have everything"
+from .options import FIXED, MISSING, MjOption, Settings, visual, with_rows
 
 _SINGLES = frozenset(
     f"{kind}_{name}"
@@ -81,7 +76,7 @@ class FixedArray(np.ndarray[Any, np.dtype[Any]]):
 
     def _check(self) -> None:
         if not self.flags.writeable:
-            raise ValueError(_FIXED.format(name=self._name))
+            raise ValueError(FIXED.format(name=self._name))
 
 
 def _plain(array: Any) -> Any:
@@ -105,71 +100,6 @@ def views(memory: NDArray[np.float64], layout: list[tuple[str, list[int]]]) -> d
     return found
 
 
-class MjOption:
-    """The options of a model, ``model.opt``."""
-
-    def __init__(
-        self, native: _native.PhysicsModel, floats: dict[str, NDArray[np.float64]], settings: dict[str, Any]
-    ) -> None:
-        """Shows the options of a model."""
-        names = (
-            "iterations",
-            "ls_iterations",
-            "ccd_iterations",
-            "integrator",
-            "solver",
-            "cone",
-            "jacobian",
-            "disableflags",
-            "enableflags",
-            "noslip_iterations",
-            "disableactuator",
-        )
-        wholes = {name: int(settings[name]) for name in names}
-        self.__dict__.update(_own=native, _floats=floats, _wholes=wholes)
-
-    def __getattr__(self, name: str) -> Any:
-        """Returns an option."""
-        floats, wholes = self.__dict__.get("_floats", {}), self.__dict__.get("_wholes", {})
-        if name in floats:
-            array = floats[name]
-            return array if name in ("gravity", "wind", "magnetic") else float(array[0])
-        if name in wholes:
-            return wholes[name]
-        raise AttributeError(_MISSING.format(name=f"opt.{name}"))
-
-    def __setattr__(self, name: str, value: Any) -> None:
-        """Sets an option; steps take it from now on."""
-        if name in self._floats:
-            self._floats[name][...] = value
-        elif name in self._wholes:
-            if int(value) != self._wholes[name]:
-                self._own.set_option(name, int(value))
-                self._wholes[name] = int(value)
-        else:
-            raise AttributeError(_MISSING.format(name=f"opt.{name}"))
-
-    def __dir__(self) -> list[str]:
-        return sorted([*self._floats, *self._wholes])
-
-
-class Settings:
-    """Numbers of a model that do not change, or change nothing: ``model.stat``, ``model.vis`` and what is in it."""
-
-    def __init__(self, of: str, values: dict[str, Any], free: tuple[str, ...] = ()) -> None:
-        """Takes values over; those of ``free`` names can be set."""
-        self.__dict__.update(values)
-        self.__dict__.update(_of=of, _free=free)
-
-    def __setattr__(self, name: str, value: Any) -> None:
-        if name not in self._free:
-            raise AttributeError(_FIXED.format(name=f"{self._of}.{name}"))
-        self.__dict__[name] = type(self.__dict__[name])(value)
-
-    def __getattr__(self, name: str) -> Any:
-        raise AttributeError(_MISSING.format(name=f"{self.__dict__.get('_of', '')}.{name}"))
-
-
 def _contents(assets: Mapping[str, bytes]) -> dict[str, bytes]:
     return {name: bytes(content) for name, content in assets.items()}
 
@@ -177,9 +107,10 @@ def _contents(assets: Mapping[str, bytes]) -> dict[str, bytes]:
 class MjModel(Named):
     """A compiled model, under the names and in the shapes of MuJoCo's ``MjModel``.
 
-    Arrays that steps read can be written to, and the next step takes what is written: masses, sizes, poses, friction, solver
-    parameters, gains (:attr:`writable` lists them). As in MuJoCo, nothing that was derived from them follows. The others say that
-    they cannot be changed.
+    Arrays that steps and pictures read can be written to, and the next step or picture takes what is written: masses, sizes,
+    poses, friction, solver parameters, gains, equalities, colours, groups, lights (:attr:`writable` lists them). As in MuJoCo,
+    nothing that was derived from them follows, and a renderer keeps the textures that materials had when it was made. The others
+    say that they cannot be changed.
     """
 
     writable: tuple[str, ...]
@@ -240,6 +171,8 @@ class MjModel(Named):
         changeable = views(native.memory, native.layout)
         floats = {name[4:]: array for name, array in changeable.items() if name.startswith("opt_")}
         arrays = {name: array for name, array in changeable.items() if not name.startswith("opt_")}
+        columns = with_rows(native.columns, settings)
+        arrays.update({name: array for name, array in columns.items() if not name.startswith("vis_")})
         own = self.__dict__
         own.update({name: int(settings[name]) for name in _SIZES})
         own.update(_own=native, _names=names, _numbers=numbers(names), _arrays=arrays, _extras=extras, _chains={})
@@ -252,10 +185,7 @@ class MjModel(Named):
         own["opt"] = MjOption(native, floats, settings)
         stat = {name: settings[name] for name in ("extent", "meaninertia", "meanmass", "meansize")}
         own["stat"] = Settings("stat", {**stat, "center": _fixed(settings["center"], "stat.center")})
-        sizes = ("offwidth", "offheight")
-        whole = Settings("vis.global_", {name: settings[name] for name in ("fovy", *sizes)}, sizes)
-        planes = Settings("vis.map", {name: settings[name] for name in ("znear", "zfar")})
-        own["vis"] = Settings("vis", {"global_": whole, "map": planes})
+        own["vis"] = visual(columns, settings["offwidth"], settings["offheight"])
         return self
 
     def __getattr__(self, name: str) -> Any:
@@ -264,7 +194,7 @@ class MjModel(Named):
             raise AttributeError(name)
         value = self._derived(name)
         if value is None:
-            raise AttributeError(_MISSING.format(name=f"model.{name}"))
+            raise AttributeError(MISSING.format(name=f"model.{name}"))
         if isinstance(value, np.ndarray):
             value = _fixed(value, name)
         self.__dict__[name] = value
@@ -274,8 +204,8 @@ class MjModel(Named):
         """Writes into an array that can be changed."""
         if name not in self._arrays:
             if name not in self.__dict__ and self._derived(name) is None:
-                raise AttributeError(_MISSING.format(name=f"model.{name}"))
-            raise AttributeError(_FIXED.format(name=name))
+                raise AttributeError(MISSING.format(name=f"model.{name}"))
+            raise AttributeError(FIXED.format(name=name))
         self._arrays[name][...] = value
 
     def __copy__(self) -> MjModel:
@@ -414,10 +344,6 @@ _DERIVED: dict[str, Callable[[MjModel], Any]] = {
     "numeric_size": lambda m: np.array([len(data) for data in m._extras["numeric_data"]], np.int32),
     "numeric_adr": lambda m: _starts(m.numeric_size),
     "numeric_data": lambda m: np.array([value for data in m._extras["numeric_data"] for value in data], np.float64),
-    "key_qpos": _keys("key_qpos", "nq"),
-    "key_qvel": _keys("key_qvel", "nv"),
-    "key_act": _keys("key_act", "na"),
-    "key_ctrl": _keys("key_ctrl", "nu"),
     "key_mpos": _keys("key_mpos", "nmocap", 3),
     "key_mquat": _keys("key_mquat", "nmocap", 4),
 }

@@ -20,6 +20,7 @@ from .core import Core
 from .course import Share
 from .goal_env import GoalEnv
 from .known_scenes import SCENE_NAME, known_scene
+from .looks import looks, take_looks
 from .renderer import MujocoRenderer
 from .replaceable import refuse_uncalled, replaced
 from .scene import Scene
@@ -416,7 +417,7 @@ class MIMoEnv(GoalEnv):
         """Returns what a copy continues with: the arguments, the state of the engine, and what else the environment holds."""
         kept = {name: value for name, value in self.__dict__.items() if name not in _REMADE}
         engine = self._core.engine
-        return {"snapshot": engine.snapshot(), "changes": engine.model_changes, "kept": kept}
+        return {"snapshot": engine.snapshot(), "changes": engine.model_changes, "looks": looks(engine), "kept": kept}
 
     def __setstate__(self, state: dict[str, Any]) -> None:
         """Makes the environment anew and continues there."""
@@ -424,6 +425,7 @@ class MIMoEnv(GoalEnv):
         self.__init__(*kept["_ezpickle_args"], **kept["_ezpickle_kwargs"])  # type: ignore[misc,unused-ignore]
         self.__dict__.update(kept)
         self._core.engine.change_model(state["changes"])
+        take_looks(self._core, state["looks"])
         self._core.engine.restore(state["snapshot"])
         self._own_seed = self.action_space._np_random
         self._core.changed()
@@ -444,6 +446,5 @@ _REMADE = frozenset(
     }
 )
 """Attributes that a copy makes anew."""
-
 _ORIGINAL = {**vars(SensingEnv), **vars(GoalEnv), **vars(MIMoEnv)}
 """Methods as this module and :mod:`.sensing` define them."""

@@ -15,9 +15,10 @@ from babybench_core.mujoco.model import _fixed
 
 from .beneath import Beneath
 from .flat import flat
+from .looks import VISUAL, is_look, visual_arrays, visual_numbers
 from .standin import MUJOCO
 from .utils import JOINT_EQUALITY
-from .views import ModelView
+from .views import LOOKS, ModelView
 
 _CHECKED = (
     *("body", "jnt", "dof", "geom", "site", "cam", "light", "tendon", "actuator", "pair", "eq", "qpos0", "qpos"),
@@ -99,11 +100,12 @@ def mujoco_model(mujoco: ModuleType, core: Beneath) -> Any:
 
 def view_model(core: Beneath) -> ModelView:
     """Returns what stands for MuJoCo's model."""
-    model = ModelView(core.blueprint)
+    model = ModelView(core.blueprint, core.engine, core.width, core.height)
     if core.place is not None:
-        for name in ("body_pos", "qpos0", "qpos_spring"):
+        model.body_pos[1] = core.place
+        for name in ("qpos0", "qpos_spring"):
             array = np.array(getattr(model, name))
-            (array[1] if array.ndim > 1 else array)[:3] = core.place
+            array[:3] = core.place
             model.__dict__[name] = _fixed(array, name)
     return model
 
@@ -119,20 +121,25 @@ class Watched:
         # muscles set the gears in each step
         muscles = core.config["actuation_model"] == "muscle"
         free = [name for name in _native.CHANGEABLE if not (muscles and name == "actuator_gear")]
-        self.names = [name for name in free if isinstance(_get(model, name), np.ndarray)]
+        self.names = [name for name in (*free, *sorted(LOOKS)) if isinstance(_get(model, name), np.ndarray)]
         """Arrays that can change."""
         self.changeable = [_get(model, name) for name in self.names]
+        for name, array in visual_arrays(model).items():
+            self.names.append(name)
+            self.changeable.append(array)
         self.watch = _native.Watch(self.changeable)
         self.seen = [array.copy() for array in self.changeable]
         self.option_names = [name for name in free if name not in self.names]
         self.options = self._options()
+        self.visual = visual_numbers(model)
         self.fixed = {} if isinstance(model, ModelView) else self._fix()
 
     def _fix(self) -> dict[str, NDArray[Any]]:
         """Makes MuJoCo's other arrays read-only, and remembers them, as they can be written in other ways."""
         fixed = {}
         for name in dir(self.model):
-            known = name.split("_")[0] in _CHECKED and name not in _ALLOWED and name not in _native.CHANGEABLE
+            free = name in _ALLOWED or name in LOOKS or name in _native.CHANGEABLE
+            known = name.split("_")[0] in _CHECKED and not free
             array = getattr(self.model, name) if known else None
             if isinstance(array, np.ndarray):
                 fixed[name] = array.copy()
@@ -150,9 +157,11 @@ class Watched:
             ValueError: Numbers that the engine does not have, that are not finite or too small.
         """
         options, changed = self._options(), self.watch.changed(self.changeable)
-        if not changed and options == self.options:
+        visual = visual_numbers(self.model)
+        if not changed and options == self.options and visual == self.visual:
             return
         engine = self.core.engine
+        self._paint(changed, visual)
         changes = {
             name: np.asarray(now, np.float64)
             for name, now, before in zip(self.option_names, options, self.options)
@@ -160,6 +169,8 @@ class Watched:
         }
         for number in changed:
             name, now = self.names[number], self.changeable[number]
+            if is_look(name):
+                continue
             whole = engine.model_array(name)
             # the last bits of what is left alone may be others in MuJoCo
             written = now != self.seen[number]
@@ -169,10 +180,29 @@ class Watched:
                 now, written = now[:, 0], written[:, 0]
             whole[written] = now[written]
             changes[name] = whole
-        engine.change_model(changes)
+        if changes:
+            engine.change_model(changes)
         self.options = options
         self.seen = [array.copy() for array in self.changeable]
         self.core.timestep = engine.dt / self.core.config["frame_skip"]
+
+    def _paint(self, changed: list[int], visual: tuple[float, ...]) -> None:
+        """Gives the engine what pictures follow, where that was written."""
+        numbers = [number for number in changed if is_look(self.names[number])]
+        looks: dict[str, Any] = {}
+        if visual != self.visual:
+            looks = {f"vis_{name}": np.array(value) for name, value in zip(VISUAL, visual)}
+        if numbers:
+            present = _native.model_columns(self.core.engine)
+        for number in numbers:
+            name, now = self.names[number], self.changeable[number]
+            whole = present[name].reshape(now.shape)
+            written = now != self.seen[number]
+            whole[written] = now[written]
+            looks[name] = whole
+        if looks:
+            _native.paint(self.core.engine, looks)
+        self.visual = visual
 
     def show(self, changes: dict[str, NDArray[Any]]) -> None:
         """Shows what the engine has changed by itself."""
@@ -182,9 +212,9 @@ class Watched:
         self.seen = [array.copy() for array in self.changeable]
         self.options = self._options()
 
-    def _locks(self) -> list[tuple[int, float]]:
+    def _locks(self) -> list[tuple[int, list[float]]]:
         active = np.asarray(self.model.eq_active0).tolist()
-        return list(zip(active, np.asarray(self.model.eq_data)[:, 0].tolist()))
+        return list(zip(active, np.asarray(self.model.eq_data).tolist()))
 
     def check(self) -> None:
         """Applies changes, and changed locks, to the engine.
@@ -197,25 +227,32 @@ class Watched:
         if changed:
             raise ValueError(
                 f"env.model was changed ({', '.join(changed)}), but what the engine takes over are "
-                f"{', '.join(_native.CHANGEABLE)}: for the rest change the configuration or the MJCF files that the scene "
-                "includes, or run this with MuJoCo and the original kit"
+                f"{', '.join((*_native.CHANGEABLE, *sorted(LOOKS)))}: for the rest change the configuration or the MJCF files "
+                "that the scene includes, or run this with MuJoCo and the original kit"
             )
         now = self._locks()
         for number, (before, after) in enumerate(zip(self.locks, now)):
             if before != after:
-                self._lock(number, *after)
+                self._lock(number, before, after)
+        if now != self.locks:
+            _native.set_equalities(self.core.engine, [bool(active) for active, _ in now])
         self.locks = now
 
-    def _lock(self, number: int, active: int, angle: float) -> None:
-        joint = self.model.equality(number).name
-        if int(np.ravel(self.model.eq_type)[number]) != JOINT_EQUALITY or not joint:
+    def _lock(self, number: int, before: tuple[int, list[float]], after: tuple[int, list[float]]) -> None:
+        """Moves the lock of a joint; whether constraints hold is set for all of them together."""
+        joint, (active, data) = self.model.equality(number).name, after
+        if data == before[1] and not active:
+            return
+        kind, second = (int(np.ravel(array)[number]) for array in (self.model.eq_type, self.model.eq_obj2id))
+        # without a second joint, MuJoCo reads the first number only
+        is_lock = bool(joint) and kind == JOINT_EQUALITY and second < 0
+        if data != before[1] and not is_lock:
             raise ValueError(
-                f"equality {number} of env.model was changed; only joints that have a name can be locked and unlocked"
+                f"eq_data of equality {number} of env.model was changed; what can be written are eq_active0, and the first "
+                "number of eq_data of a joint with a name"
             )
-        if active:
-            self.core.engine.lock(joint, angle)
-        else:
-            self.core.engine.unlock(joint)
+        if is_lock:
+            self.core.engine.lock(joint, data[0])
 
 
 def make_model(core: Beneath) -> Any:

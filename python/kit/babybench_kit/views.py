@@ -2,8 +2,9 @@
 
 Names, shapes, number types and units are MuJoCo's. The arrays of a state show the present after every step; ``qpos``, ``qvel``,
 ``ctrl``, ``qfrc_applied``, ``xfrc_applied`` and those of mocap bodies can be written. Of a model ``eq_active0`` and ``eq_data``
-can be written, which lock joints, and what the engine takes over in the next step: gravity, timestep, mass, inertia, size,
-friction, damping, stiffness, armature, gears, softness.
+can be written, which lock joints, what the engine takes over in the next step (gravity, timestep, mass, inertia, size, poses,
+friction, damping, stiffness, armature, gears, softness), and what the next picture shows: colours, groups, materials, lights,
+fields of view.
 """
 
 from __future__ import annotations
@@ -16,6 +17,7 @@ from numpy.typing import NDArray
 from babybench_core import _native
 from babybench_core.contacts import ContactList
 from babybench_core.mujoco.model import _fixed
+from babybench_core.mujoco.options import visual, with_rows
 from babybench_core.named import KINDS as _KINDS
 from babybench_core.named import PREFIX as _PREFIX
 from babybench_core.named import Named as _Named
@@ -60,7 +62,18 @@ _SIZES = {
     "nsensordata": "nsensordata",
     "npair": "npair",
 }
-_WRITABLE = frozenset({"eq_active0", "eq_data"}).union(_native.CHANGEABLE)
+LOOKS = frozenset(
+    {
+        *("geom_rgba", "geom_group", "geom_matid", "site_rgba", "site_group", "site_matid"),
+        *("tendon_rgba", "tendon_group", "tendon_matid", "cam_fovy"),
+        *(f"mat_{name}" for name in ("rgba", "specular", "shininess", "reflectance", "emission")),
+        *("mat_texrepeat", "mat_texuniform", "mat_texid"),
+        *(f"light_{name}" for name in ("ambient", "diffuse", "specular", "attenuation", "cutoff", "exponent")),
+        *("light_pos", "light_dir", "light_active"),
+    }
+)
+"""The arrays that pictures follow."""
+_WRITABLE = frozenset({"eq_active0", "eq_data"}).union(_native.CHANGEABLE, LOOKS)
 OPTIONS = tuple(name[4:] for name in _native.CHANGEABLE if name.startswith("opt."))
 """The options that can be written."""
 
@@ -111,8 +124,8 @@ class ModelView(_Named):
         """
         raise NotImplementedError(_DOCUMENTS.format(name="MjModel.from_xml_path"))
 
-    def __init__(self, blueprint: _native.Blueprint) -> None:
-        """Shows the scene of a blueprint."""
+    def __init__(self, blueprint: _native.Blueprint, engine: _native.Env, width: int, height: int) -> None:
+        """Shows the scene of a blueprint as an environment has it, and the largest size of its pictures, pixels."""
         own = self.__dict__
         options = dict(blueprint.model_options)
         extras = _native.model_extras(blueprint)
@@ -131,6 +144,9 @@ class ModelView(_Named):
             nmat=len(names["material"]),
         )
         own.update({name: array for name, array in extras.items() if name.startswith("eq_")})
+        columns = with_rows(_native.model_columns(engine), {})
+        own.update({name: columns[name] for name in LOOKS})
+        own["vis"] = visual(columns, width, height)
         keys = ("iterations", "tolerance", "ls_iterations", "ls_tolerance", "ccd_iterations", "ccd_tolerance")
         own["opt"] = Options({key: options[key] for key in (*keys, *OPTIONS)})
 

@@ -76,6 +76,14 @@ impl Blueprint {
         let model = self.model.edited(|arrays| arrays.materials.clone_from(&made.materials));
         let blueprint = Self {
             config: Arc::new(config),
+            ..self.clone()
+        };
+        blueprint.with_look(model)
+    }
+
+    /// Returns the same blueprint with a model of another look.
+    pub(crate) fn with_look(&self, model: Model) -> Result<Self, EnvError> {
+        let blueprint = Self {
             model: Arc::new(model),
             surface: SkinAndScenery {
                 scenery: Arc::default(),
