@@ -43,6 +43,7 @@ __all__ = [
     "replay_record",
     "scene_file",
     "set_equalities",
+    "spread_linear",
     "write_video",
 ]
 
@@ -695,6 +696,22 @@ def paint(env: Env, looks: Mapping[str, npt.ArrayLike]) -> None:
 
 def set_equalities(env: Env, active: Sequence[bool]) -> None:
     """Sets which equality constraints hold, now and in later episodes."""
+
+def spread_linear(
+    sides: Sequence[tuple[int, int, _Array]],
+    contacts: tuple[_Floats, _Floats, _Floats, Sequence[int]],
+    poses: tuple[_Floats, _Floats],
+    skin: tuple[dict[int, _Floats], dict[int, npt.NDArray[np.float32]], dict[int, float]],
+) -> None:
+    """Adds the force of each contact on each body to the sensors near it, as MIMo's ``spread_linear`` does.
+
+    Args:
+        sides: Contact, body and force of each.
+        contacts: Frames (n, 9), whose normals are inverted for bodies of first geoms, points (n, 3), distances, and bodies of
+            first geoms.
+        poses: Positions (nbody, 3) and orientations (nbody, 9) of bodies.
+        skin: Positions (n, 3), outputs (n, numbers) and distances between sensors of each body.
+    """
 
 def write_video(
     path: str | os.PathLike[str], frames: Sequence[npt.NDArray[np.uint8]], frame_rate: float, width: int, height: int

@@ -32,6 +32,7 @@ mod slab;
 mod state;
 mod task;
 mod touch;
+mod touch_spread;
 mod vector;
 mod video;
 mod view;
@@ -64,6 +65,8 @@ mod _native {
     use super::record::{Folder, Recorder, measure_record, play_senses, replay_record};
     #[pymodule_export]
     use super::scene::{embedded_files, model_extras, scene_file};
+    #[pymodule_export]
+    use super::touch_spread::spread_linear;
     #[pymodule_export]
     use super::vector::VectorEnv;
     #[pymodule_export]

@@ -34,7 +34,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from enum import Enum
-from typing import TypeVar
+from typing import Any
 
 
 class Moment(Enum):
@@ -116,14 +116,15 @@ _COPIES: dict[str, dict[Copy, Copy]] = {
 }
 _TURNS: dict[str, dict[Turn, Turn]] = {"begin": {Turn.SCRIPT: Turn.ENGINE}, "end": {Turn.ENGINE: Turn.SCRIPT}}
 
-_Part = TypeVar("_Part", bound=Enum)
-
-
-def _after(changes: Mapping[str, Mapping[_Part, _Part]], change: str, present: _Part) -> _Part:
-    following = changes[change].get(present)
-    if following is None:
-        raise IllegalChange(f"{change} does not follow {type(present).__name__}.{present.name}: see {__name__}")
-    return following
+_TABLES: dict[str, Mapping[str, Mapping[Any, Any]]] = {"moment": _MOMENTS, "copy": _COPIES, "turn": _TURNS}
+_PARTS = {change: part for part, table in _TABLES.items() for change in table}
+"""The part of a course that each change concerns."""
+_FOLLOWING: dict[tuple[str, str], Any] = {}
+"""What follows a change, by its name and that of the present member: members as keys would be hashed in Python."""
+for _table in _TABLES.values():
+    _FOLLOWING.update(
+        {(change, present.name): following for change, pairs in _table.items() for present, following in pairs.items()}
+    )
 
 
 class Course:
@@ -145,9 +146,9 @@ class Course:
         Raises:
             IllegalChange: The table does not have it here.
         """
-        if change in _MOMENTS:
-            self.moment = _after(_MOMENTS, change, self.moment)
-        elif change in _COPIES:
-            self.copy = _after(_COPIES, change, self.copy)
-        else:
-            self.turn = _after(_TURNS, change, self.turn)
+        part = _PARTS[change]
+        present = getattr(self, part)
+        following = _FOLLOWING.get((change, present._name_))
+        if following is None:
+            raise IllegalChange(f"{change} does not follow {type(present).__name__}.{present.name}: see {__name__}")
+        setattr(self, part, following)

@@ -6,7 +6,7 @@ It runs in the engine. These classes show where the sensors are and what they fe
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import TYPE_CHECKING, Any, Callable, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -15,7 +15,8 @@ from babybench_core import _native
 
 from . import utils
 from .course import Share
-from .replaceable import Replaceable, replaced
+from .replaceable import replaced
+from .touch_base import DiscreteTouch, SensorMesh, Touch
 from .utils import EPS
 
 if TYPE_CHECKING:
@@ -23,122 +24,18 @@ if TYPE_CHECKING:
 
     from .sensing import SensingEnv
 
+__all__ = ["DiscreteTouch", "Touch", "TrimeshTouch", "scale_linear"]
+
 Array = NDArray[np.float64]
 
 _LEAST_FORCE = 1e-9
 """Least normal force of a contact that is felt, N."""
 
 
-class SensorMesh:
-    """The sensors of a body.
-
-    Attributes:
-        vertices: Their positions, (n, 3), frame of the body, m.
-    """
-
-    def __init__(self, vertices: Array) -> None:
-        """Takes the positions."""
-        self.vertices = vertices
-
-    def __getattr__(self, name: str) -> Any:
-        raise AttributeError(
-            f"{name}: the engine knows the touch sensors of a body as points (vertices), not as a mesh; "
-            "trimesh.convex.convex_hull(mesh.vertices) makes one"
-        )
-
-    def __repr__(self) -> str:
-        return f"<SensorMesh of {len(self.vertices)} sensors>"
-
-
 def scale_linear(force: ArrayLike, distances: ArrayLike, scale: float, **_: Any) -> Array:
     """Returns a force (3,) at each distance (n,), m, falling to zero at ``scale``: (n, 3)."""
     weights = np.maximum(0.0, 1.0 - np.asarray(distances) / scale)
     return np.asarray(weights[:, None] * np.asarray(force))
-
-
-class Spacings(dict[int, float]):
-    """Distances between the sensors of each body, by its id, m; a script may write to them."""
-
-    def __init__(self, spacings: dict[int, float], written: Callable[[], None]) -> None:
-        """Takes the distances, and what is called after a change."""
-        super().__init__(spacings)
-        self._written = written
-
-    def __setitem__(self, body: int, spacing: float) -> None:
-        super().__setitem__(body, spacing)
-        self._written()
-
-    def update(self, *spacings: Any, **named: Any) -> None:
-        """Replaces some of the distances."""
-        super().update(*spacings, **named)
-        self._written()
-
-    def __reduce__(self) -> tuple[Any, ...]:
-        """Makes a copy a plain dictionary."""
-        return dict, (dict(self),)
-
-
-class Touch(Replaceable):
-    """The interface of touch.
-
-    Attributes:
-        env: The environment.
-        sensor_scales: Distance between the sensors of each body, by its id, m.
-        touch_type: What a sensor reports; ``touch_function`` is the method, ``touch_size`` how many numbers.
-        response_type: How a force spreads; ``response_function`` is the method.
-        sensor_positions: Where the sensors of each body are, (n, 3), frame of the body, m.
-        sensor_outputs: What they felt last, (n, touch_size), N.
-    """
-
-    VALID_TOUCH_TYPES: ClassVar[dict[str, int]] = {}
-    VALID_RESPONSE_FUNCTIONS: ClassVar[list[str]] = []
-
-    def __init__(self, env: SensingEnv, touch_params: dict[str, Any]) -> None:
-        """Belongs to an environment."""
-        self.env = env
-        self._core = env._core
-        ids = {name: number for number, name in enumerate(env._core.names["body"])}
-        missing = [body for body in touch_params["scales"] if body not in ids]
-        if missing:
-            raise KeyError(
-                f"touch_params: the scene has no {', '.join(missing)}. MIMo v1 has the bodies of DEFAULT_TOUCH_PARAMS, v2 with "
-                "fingers those of DEFAULT_TOUCH_PARAMS_V2"
-            )
-        scales = {ids[body]: scale for body, scale in touch_params["scales"].items()}
-        self.sensor_scales: dict[int, float] = Spacings(scales, self._taken_over)
-        self.touch_type: str = touch_params["touch_function"]
-        self.response_type: str = touch_params["response_function"]
-        for value, valid in (
-            (self.touch_type, self.VALID_TOUCH_TYPES),
-            (self.response_type, self.VALID_RESPONSE_FUNCTIONS),
-        ):
-            if value not in valid:
-                raise AssertionError(f"touch: {value} does not exist; there are {', '.join(valid)}")
-        self.touch_function: Callable[..., Array] = getattr(self, self.touch_type)
-        self.touch_size = self.VALID_TOUCH_TYPES[self.touch_type]
-        self.response_function: Callable[..., None] = getattr(self, self.response_type)
-        self.sensor_positions: dict[int, Array] = {}
-
-    @property
-    def _plain(self) -> bool:
-        """Whether the engine computes the output."""
-        return False
-
-    def get_touch_obs(self) -> NDArray[np.float32]:
-        """Feels, and returns the output, (sensors, touch_size)."""
-        raise NotImplementedError
-
-
-class DiscreteTouch(Touch):
-    """MIMo's touch by geoms; the kit's own does not run, so nobody has it."""
-
-    def __init__(self, env: SensingEnv, touch_params: dict[str, Any]) -> None:
-        """Refuses.
-
-        Raises:
-            NotImplementedError: Always.
-        """
-        raise NotImplementedError("DiscreteTouch does not run in the kit either: use TrimeshTouch")
 
 
 class TrimeshTouch(Touch):
@@ -226,6 +123,7 @@ class TrimeshTouch(Touch):
 
     def _taken_over(self) -> None:
         """Computes in Python from now on, as a script has replaced a step."""
+        self.__dict__["_of_script"] = {}
         if "_parts_of_mimo" not in self.__dict__ or self._share is not Share.NOTHING:
             return
         if self._felt_by_engine():
@@ -344,11 +242,21 @@ class TrimeshTouch(Touch):
     def get_contacts(self) -> list[tuple[int, int, Array]]:
         """Returns contact, body and force (``touch_function``) for each sensing side of each contact that is felt."""
         contacts, sides = self._core.contacts(), []
-        own_force = bool(replaced(self, _ORIGINAL, ("get_raw_force",)))
-        for number, normal in enumerate(contacts["force"][:, 0].tolist()):
-            pair = [int(self._core.body_of_geom[contacts[geom][number]]) for geom in ("geom1", "geom2")]
+        own_force, own_sensors = self._own("get_raw_force"), self._own("has_sensors")
+        normals, pairs = contacts["force"][:, 0], [contacts["geom1"], contacts["geom2"]]
+        bodies = [self._core.body_of_geom[geoms].tolist() for geoms in pairs]
+        if own_force or own_sensors:
+            candidates = range(len(normals))
+        else:  # most contacts are of nothing that feels
+            felt = self._sensed[pairs[0]] | self._sensed[pairs[1]]
+            candidates = np.flatnonzero(felt & (abs(normals) >= _LEAST_FORCE)).tolist()
+        for number in candidates:
+            pair = [side[number] for side in bodies]
             sensing = [body for body in pair if self.has_sensors(body)]
-            if sensing and abs(self.get_raw_force(number, pair[0])[0] if own_force else normal) >= _LEAST_FORCE:
+            if (
+                sensing
+                and abs(self.get_raw_force(number, pair[0])[0] if own_force else normals[number]) >= _LEAST_FORCE
+            ):
                 sides += [(number, body, self.touch_function(number, body)) for body in sensing]
         self.contact_tuples = sides
         return sides
@@ -404,9 +312,39 @@ class TrimeshTouch(Touch):
             return core.touch().reshape(self._shape)
         sides = self.get_contacts()
         self.sensor_outputs = self.get_empty_sensor_dict(self.touch_size)
-        for contact, body, force in sides:
-            self.response_function(contact, body, force)
+        if self._own("spread"):
+            for contact, body, force in sides:
+                self.response_function(contact, body, force)
+        else:
+            self._spread(sides)
         return self.flatten_sensor_dict(self.sensor_outputs)
+
+    def _own(self, what: str) -> bool:
+        """Tells whether a script has replaced a method, or ``spread``: one of those that spread a force."""
+        known: dict[str, bool] = self.__dict__.setdefault("_of_script", {})
+        found = known.get(what)
+        if found is None:
+            if what == "spread":
+                found = (
+                    getattr(self.response_function, "__func__", None) is not TrimeshTouch.spread_linear
+                    or bool(replaced(self, _ORIGINAL, _SPREADING))
+                    or not self._replaced <= _HARMLESS
+                )
+            else:
+                found = bool(replaced(self, _ORIGINAL, (what,)))
+            known[what] = found
+        return found
+
+    def _spread(self, sides: list[tuple[int, int, Array]]) -> None:
+        """Calls :meth:`spread_linear` of the engine for all forces."""
+        contacts, poses = self._core.contacts(), self._core.poses
+        first = self._core.body_of_geom[contacts["geom1"]].tolist()
+        _native.spread_linear(
+            sides,
+            (self._frames(), contacts["pos"], contacts["dist"], first),
+            (poses.xpos, poses.xmat),
+            (self.sensor_positions, self.sensor_outputs, self.sensor_scales),
+        )
 
     def spread_linear(self, contact_id: int, body_id: int, force: ArrayLike) -> None:
         """Adds a force to the sensors within twice their distance of a contact, the less the farther they are."""
@@ -501,3 +439,15 @@ _STEPS: Iterable[str] = (
     "_sensor_distances",
 )
 """Methods between a contact and the output, as this module defines them: a script that replaces one has all called."""
+_SPREADING = (
+    "spread_linear",
+    "get_contact_normal",
+    "get_contact_position_relative",
+    "get_contact_position_world",
+    "get_sensors_within_distance",
+    "sensor_outputs",
+    "_sensor_distances",
+)
+"""Methods that spread a force."""
+_HARMLESS = frozenset({"sensor_scales", "touch_function", "touch_size", "touch_type"})
+"""Attributes that a script may replace without replacing how a force spreads."""
