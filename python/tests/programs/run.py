@@ -31,6 +31,9 @@ class Program:
 _TACTILE = ("uchanable/tactile-lm", "b96603d6caa2fe872ccedd9375e71ea5b5df6c7c")
 _MOTHER = ("ctu-vras/mom-for-mimo", "8a0f73a2ef1236b616c5473050d42c709125bc9b")
 _MIMO = ("trieschlab/MIMo", "623c9af9f289ec62c666518b3af1384da5bb3ebb")
+_LENZ = ("miles-lenz/MIMo", "9f0f538dfa1da8b116ce96fc3c0be757ff8f6a41")
+_FEDOZZI = ("marcogfedozzi/MIMo", "a20082914e0d42abb0c638b884f57e94c19b2141")
+_DOHM = ("dohmjan/MIMo", "b72119eceefde78b3dc855bd439b236d84187467")
 _SCENE = """
 import os, gymnasium, mimoEnv, mom_mimoEnv
 path = os.path.abspath("mom_mimoEnv/assets/{scene}.xml")
@@ -48,6 +51,16 @@ env.reset(seed=0)
 run(env, 20)
 print("ran")
 """
+_FILE = """
+import os, runpy
+import babybench, mimoEnv
+from mimoEnv.envs.mimo_env import SCENE_DIRECTORY
+env = runpy.run_path("mimoEnv/envs/{file}.py")["{cls}"](model_path={scene})
+env.reset(seed=0)
+for _ in range(20):
+    env.step(env.action_space.sample())
+print("ran")
+"""
 PROGRAMS = (
     Program(*_TACTILE, ("ct_touch/test_ct_touch.py",), "ALL TESTS PASSED"),
     Program(*_TACTILE, ("som/test_mimo_integration.py",), "All MIMo integration tests passed"),
@@ -56,6 +69,22 @@ PROGRAMS = (
         for scene, count in (("mom1_scene", 34), ("mom_front_scene", 35), ("testing", 0))
     ),
     Program(*_MIMO, ("-c", _BENCHMARK), "ran"),
+    Program(*_DOHM, ("-c", _BENCHMARK), "ran"),
+    Program(
+        *_LENZ,
+        ("-c", _FILE.format(file="roll_over", cls="MIMoRollOverEnv", scene="'mimoEnv/assets/roll_over_scene.xml'")),
+        "ran",
+    ),
+    Program(
+        *_FEDOZZI,
+        (
+            "-c",
+            _FILE.format(
+                file="custom", cls="MIMoCustomEnv", scene="os.path.join(SCENE_DIRECTORY, 'selfbody_scene.xml')"
+            ),
+        ),
+        "ran",
+    ),
 )
 
 
