@@ -12,9 +12,10 @@ import gymnasium
 import numpy as np
 import numpy.typing as npt
 
-from babybench_core import _native, changes, hints, locks, scenes, spaces
+from babybench_core import _native, changes, hints, locks, looks, scenes, spaces
 from babybench_core.goals import ComputeReward, compute_reward
 from babybench_core.records import LockReport
+from babybench_core.scene_access import SceneAccess
 from babybench_core.senses import Proprioception, Touch
 from babybench_core.window import Window
 
@@ -22,7 +23,7 @@ Observation = dict[str, npt.NDArray[Any]]
 """MIMo's sensations by name: see :class:`Env`."""
 
 
-class Env(gymnasium.Env[Observation, npt.NDArray[Any]]):
+class Env(SceneAccess, gymnasium.Env[Observation, npt.NDArray[Any]]):
     """MIMo in a room: an environment of BabyBench.
 
     The action is a vector of motor commands (``action_space``, float32); values out of bounds are clipped. BabyBench's
@@ -294,81 +295,6 @@ class Env(gymnasium.Env[Observation, npt.NDArray[Any]]):
         """
         return Touch(self._core)
 
-    @cached_property
-    def actuator_names(self) -> list[str]:
-        """The actuators; with muscles, the action has all of them twice, flexors first."""
-        return list(self._core.blueprint.model_names["actuator"])
-
-    @property
-    def body_names(self) -> list[str]:
-        """The bodies by id, as the document names them: rows of ``xpos``, ``body_mass``, ..."""
-        return list(self._core.blueprint.model_names["body"])
-
-    @property
-    def joint_names(self) -> list[str]:
-        """The joints by id, as the document names them: rows of ``jnt_range``, ..."""
-        return list(self._core.blueprint.model_names["joint"])
-
-    @property
-    def site_names(self) -> list[str]:
-        """The sites by id, as the document names them: rows of ``site_xpos``; empty where it gives no name."""
-        return list(self._core.blueprint.model_names["site"])
-
-    @property
-    def geom_names(self) -> list[str]:
-        """The geoms by id, as the document names them: rows of ``geom_xpos``, ids of contacts, touches and :meth:`segmentation`.
-
-        A geom without a name has that of its part: see :attr:`part_names`.
-        """
-        return changes.names_of("geom", self._core.blueprint)
-
-    @cached_property
-    def part_names(self) -> list[str]:
-        """The parts that the ids of geoms mean: the body, and which of its geoms, ``left_hand 1/2``."""
-        return changes.part_names(self._core.blueprint)
-
-    def array(self, name: str, element: Optional[str] = None) -> npt.NDArray[Any]:
-        """Returns a copy of an array of the scene or of its state by MuJoCo's name, such as ``jnt_range`` or ``xpos``.
-
-        Args:
-            name: The array.
-            element: The name of a body, joint, geom, site or actuator, for its row alone; of a joint with several degrees of
-                freedom all of its rows.
-
-        Raises:
-            KeyError: There is no such array or element.
-        """
-        array = changes.read(name, self._core.state_array, self._core.model_array)
-        return array if element is None else array[changes.rows_of(name, element, self._core.blueprint)]
-
-    def change_model(self, model: changes.Changes) -> None:
-        """Changes numbers of the model from the next step on, in this and in later episodes.
-
-        Args:
-            model: Arrays by MuJoCo's names, as :meth:`array` returns them, or mappings from names of elements to rows.
-
-        What can change are ``opt.gravity``, ``opt.timestep``, ``opt.impratio``, ``opt.density``, ``opt.viscosity``, ``opt.wind``;
-        ``body_mass``, ``body_inertia``, ``geom_size``, ``geom_friction``, ``dof_damping``, ``dof_armature``,
-        ``dof_frictionloss``, ``jnt_stiffness``, ``actuator_gear``; ``solref``, ``solimp``, ``margin``, ``gap`` and
-        ``friction`` of geoms and pairs, and ``solref`` and ``solimp`` of joints, dofs and equalities; and the constants
-        ``body_invweight0``, ``dof_invweight0`` and ``geom_rbound``, which do not follow by themselves, as they do not in
-        MuJoCo without ``mj_setConst``.
-
-        Example:
-            >>> import babybench
-            >>> env = babybench.make("self_touch", vision_active=False)
-            >>> env.change_model({"opt.gravity": [0, 0, -1.62], "geom_friction": env.array("geom_friction") / 2})
-            >>> env.change_model({"body_mass": {"head": 1.5}})
-            >>> mass = env.array("body_mass")
-            >>> observation, info = env.reset(seed=0, options={"model": {"body_mass": mass * 1.1}})
-
-        Raises:
-            KeyError: There is nothing of that name, or it cannot change.
-            ValueError: Numbers of another shape, that are not finite or too small; nothing has changed then.
-        """
-        core = self._core
-        core.change_model(changes.arrays(model, core.model_array, core.blueprint))
-
     def set_age(self, age: Optional[float]) -> None:
         """Lets MIMo grow to an age in months, 0 to 24, or back to MIMo's own proportions (``None``); the next call is a reset.
 
@@ -518,15 +444,17 @@ class Env(gymnasium.Env[Observation, npt.NDArray[Any]]):
             state.pop(made, None)
         state["_snapshot"] = None if self._core.closed else self._core.snapshot()
         state["_changes"] = {} if self._core.closed else self._core.model_changes
+        state["_looks"] = {} if self._core.closed else looks.of(self._core)
         return state
 
     def __setstate__(self, state: dict[str, Any]) -> None:
         """Builds the copy."""
-        snapshot, changed = state.pop("_snapshot"), state.pop("_changes")
+        snapshot, changed, look = state.pop("_snapshot"), state.pop("_changes"), state.pop("_looks")
         self.__dict__.update(state)
         self._window, self._recorders = None, weakref.WeakSet()
         self._build()
         self._core.change_model(changed)
+        looks.take(self._core, look)
         if snapshot is None:
             self._core.close()
         else:

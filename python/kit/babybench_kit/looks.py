@@ -4,13 +4,12 @@ from __future__ import annotations
 
 from typing import Any
 
-import numpy as np
 from numpy.typing import NDArray
 
-from babybench_core import _native
+from babybench_core import looks
 
 from .beneath import Beneath
-from .views import LOOKS, ModelView
+from .views import ModelView
 
 VISUAL = ("fovy", "znear", "zfar", "active")
 """The settings of pictures that are single numbers."""
@@ -33,22 +32,8 @@ def visual_arrays(model: Any) -> dict[str, NDArray[Any]]:
     return {f"vis_{name}": getattr(vis.headlight, name) for name in ("ambient", "diffuse", "specular")}
 
 
-def is_look(name: str) -> bool:
-    """Tells whether pictures follow an array."""
-    return name in LOOKS or name.startswith("vis_")
-
-
-def looks(engine: _native.Env) -> dict[str, NDArray[Any]]:
-    """Returns the look of an environment's model."""
-    return {name: array for name, array in _native.model_columns(engine).items() if is_look(name)}
-
-
 def take_looks(core: Beneath, given: dict[str, NDArray[Any]]) -> None:
     """Gives an environment the look of another one, of which it is a copy."""
-    own = looks(core.engine)
-    others = {name: array for name, array in given.items() if not np.array_equal(array, own[name])}
-    if not others:
-        return
-    _native.paint(core.engine, others)
-    for name in LOOKS.intersection(others):
-        getattr(core.model, name)[...] = others[name]
+    changed = looks.take(core.engine, given)
+    for name in looks.LOOKS.intersection(changed):
+        getattr(core.model, name)[...] = changed[name]

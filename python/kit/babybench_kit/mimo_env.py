@@ -13,14 +13,14 @@ from typing import Any, NoReturn
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from babybench_core import _native
+from babybench_core import _native, looks
 
 from .actuation import MODELS, ActuationModel, SpringDamperModel
 from .core import Core
 from .course import Share
 from .goal_env import GoalEnv
 from .known_scenes import SCENE_NAME, known_scene
-from .looks import looks, take_looks
+from .looks import take_looks
 from .renderer import MujocoRenderer
 from .replaceable import refuse_uncalled, replaced
 from .scene import Scene
@@ -417,7 +417,7 @@ class MIMoEnv(GoalEnv):
         """Returns what a copy continues with: the arguments, the state of the engine, and what else the environment holds."""
         kept = {name: value for name, value in self.__dict__.items() if name not in _REMADE}
         engine = self._core.engine
-        return {"snapshot": engine.snapshot(), "changes": engine.model_changes, "looks": looks(engine), "kept": kept}
+        return {"snapshot": engine.snapshot(), "changes": engine.model_changes, "looks": looks.of(engine), "kept": kept}
 
     def __setstate__(self, state: dict[str, Any]) -> None:
         """Makes the environment anew and continues there."""

@@ -11,14 +11,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from babybench_core import _native
+from babybench_core.looks import LOOKS, is_look
 from babybench_core.mujoco.model import _fixed
 
 from .beneath import Beneath
 from .flat import flat
-from .looks import VISUAL, is_look, visual_arrays, visual_numbers
+from .looks import VISUAL, visual_arrays, visual_numbers
 from .standin import MUJOCO
 from .utils import JOINT_EQUALITY
-from .views import LOOKS, ModelView
+from .views import ModelView
 
 _CHECKED = (
     *("body", "jnt", "dof", "geom", "site", "cam", "light", "tendon", "actuator", "pair", "eq", "qpos0", "qpos"),

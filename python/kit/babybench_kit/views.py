@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from babybench_core import _native
 from babybench_core.contacts import ContactList
+from babybench_core.looks import LOOKS
 from babybench_core.mujoco.model import _fixed
 from babybench_core.mujoco.options import visual, with_rows
 from babybench_core.named import KINDS as _KINDS
@@ -62,17 +63,6 @@ _SIZES = {
     "nsensordata": "nsensordata",
     "npair": "npair",
 }
-LOOKS = frozenset(
-    {
-        *("geom_rgba", "geom_group", "geom_matid", "site_rgba", "site_group", "site_matid"),
-        *("tendon_rgba", "tendon_group", "tendon_matid", "cam_fovy"),
-        *(f"mat_{name}" for name in ("rgba", "specular", "shininess", "reflectance", "emission")),
-        *("mat_texrepeat", "mat_texuniform", "mat_texid"),
-        *(f"light_{name}" for name in ("ambient", "diffuse", "specular", "attenuation", "cutoff", "exponent")),
-        *("light_pos", "light_dir", "light_active"),
-    }
-)
-"""The arrays that pictures follow."""
 _WRITABLE = frozenset({"eq_active0", "eq_data"}).union(_native.CHANGEABLE, LOOKS)
 OPTIONS = tuple(name[4:] for name in _native.CHANGEABLE if name.startswith("opt."))
 """The options that can be written."""

@@ -1,0 +1,42 @@
+"""The look of a model: what pictures follow, and no step reads."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from babybench_core import _native
+
+LOOKS = frozenset(
+    {
+        *("geom_rgba", "geom_group", "geom_matid", "site_rgba", "site_group", "site_matid"),
+        *("tendon_rgba", "tendon_group", "tendon_matid", "cam_fovy"),
+        *(f"mat_{name}" for name in ("rgba", "specular", "shininess", "reflectance", "emission")),
+        *("mat_texrepeat", "mat_texuniform", "mat_texid"),
+        *(f"light_{name}" for name in ("ambient", "diffuse", "specular", "attenuation", "cutoff", "exponent")),
+        *("light_pos", "light_dir", "light_active"),
+    }
+)
+"""The arrays that pictures follow."""
+
+
+def is_look(name: str) -> bool:
+    """Tells whether pictures follow an array, or a setting of ``model.vis``."""
+    return name in LOOKS or name.startswith("vis_")
+
+
+def of(engine: _native.Env) -> dict[str, NDArray[Any]]:
+    """Returns the look of an environment's model."""
+    return {name: array for name, array in _native.model_columns(engine).items() if is_look(name)}
+
+
+def take(engine: _native.Env, given: Mapping[str, NDArray[Any]]) -> dict[str, NDArray[Any]]:
+    """Gives an environment the look of another one, of which it is a copy, and returns what has changed."""
+    own = of(engine)
+    others = {name: array for name, array in given.items() if not np.array_equal(array, own[name])}
+    if others:
+        _native.paint(engine, others)
+    return others
