@@ -84,14 +84,14 @@ impl Cell for bool {
     }
 }
 
-impl Cell for usize {
+impl Cell for i32 {
     fn read(&self, out: &mut Vec<f64>) {
-        out.push(*self as f64);
+        out.push(f64::from(*self));
     }
 
     fn write(&mut self, numbers: &[f64]) -> bool {
-        *self = numbers[0] as usize;
-        numbers[0] >= 0.0
+        *self = numbers[0] as i32;
+        true
     }
 }
 

@@ -154,7 +154,7 @@ def test_a_renderer_keeps_the_textures_that_materials_had_when_it_was_made() -> 
         (lambda m: m.geom_matid.__setitem__(0, 7), "model.geom_matid, element 0"),
         (lambda m: m.mat_texid.__setitem__((0, 1), 9), "model.mat_texid, element 0"),
         (lambda m: m.mat_texid.__setitem__((0, 3), 0), "mjTEXROLE_RGB"),
-        (lambda m: m.geom_group.__setitem__(1, -1), "model.geom_group, element 1"),
+        (lambda m: m.geom_matid.__setitem__(1, -2), "model.geom_matid, element 1"),
         (lambda m: m.eq_data.__setitem__((0, 0), np.inf), "model.eq_data, element 0"),
     ],
 )

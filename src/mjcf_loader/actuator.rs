@@ -252,13 +252,14 @@ impl Actuator {
         let kp = servo.kp.unwrap_or(self.law.gainprm[0]);
         self.law.gainprm[0] = kp;
         self.law.biasprm[1] = -kp;
-        match (servo.kv, servo.dampratio) {
+        // zeros keep the value of a default, as in MuJoCo 3.3.0
+        let [kv, dampratio] = [servo.kv, servo.dampratio].map(|given| given.filter(|value| *value != 0.0));
+        match (kv, dampratio) {
             (Some(_), Some(_)) => return Err(TWO_DAMPINGS),
-            // zeros keep the value of a default, as in MuJoCo 3.3.0
-            (Some(kv), None) if kv != 0.0 => self.law.biasprm[2] = -kv,
+            (Some(kv), None) => self.law.biasprm[2] = -kv,
             // a positive number is the damping ratio until the inertia is known
-            (None, Some(ratio)) if ratio != 0.0 => self.law.biasprm[2] = ratio,
-            _ => {}
+            (None, Some(ratio)) => self.law.biasprm[2] = ratio,
+            (None, None) => {}
         }
         if let Some(timeconst) = Filter::read(e).timeconst {
             self.law.dynprm[0] = timeconst;

@@ -397,7 +397,9 @@ fn each(
     max: usize,
     read: impl Fn(&str) -> Result<f64, ErrorKind>,
 ) -> Result<Vec<f64>, ErrorKind> {
-    let words = text.split_ascii_whitespace();
+    // as in MuJoCo, vertical tabs are spaces, too
+    let space = |c: char| c.is_ascii_whitespace() || c == '\u{b}';
+    let words = text.split(space).filter(|word| !word.is_empty());
     let found = words.clone().count();
     if found < min || found > max {
         return Err(ErrorKind::WrongCount {

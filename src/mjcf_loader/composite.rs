@@ -58,7 +58,7 @@ table! {
         "texcoord" texcoord: bool = false, FLAG, "Whether it has texture coordinates.";
         "material" material: Option<String> = None, TEXT, "Material.";
         "rgba" rgba: [f64; 4] = [1.0; 4], reals(4, Any), "Colour and opacity.";
-        "group" group: usize = 0, int(0, MAX_SKIN_GROUP), "Visual group; 0 to 2 are drawn.";
+        "group" group: i32 = 0, int(0, MAX_SKIN_GROUP), "Visual group; 0 to 2 are drawn.";
         "subgrid" subgrid: i32 = 0, int(i32::MIN as i64, i32::MAX as i64), "Vertices between one end of a box and the other, on cubics through the ends; with any, there are as many on both sides of the middle line. Below 0 counts as 0.";
         check "inflate", real(Any), "Ignored, as in MuJoCo: the skin of a cable is blown up by the thickness of its boxes.";
     }

@@ -18,7 +18,7 @@ use super::skin::Skin;
 use super::surface::{Material, Texture};
 use super::table::{Table, table};
 use super::words::{
-    CAM_LIGHT, FLUID, GREY, JOINTS, MAX_BITS, MAX_GROUP, MIN_BITS, SHAPES, SITE_SHAPES, SOLIMP, SOLREF, TRI,
+    CAM_LIGHT, FLUID, GREY, JOINTS, MAX_BITS, MAX_GROUP, MIN_BITS, MIN_GROUP, SHAPES, SITE_SHAPES, SOLIMP, SOLREF, TRI,
 };
 
 use super::settings::Visual;
@@ -33,7 +33,7 @@ table! {
         also states: KeyframeValues = KeyframeValues::new();
         "name" name: String = String::new(), TEXT, own, "Name.";
         "type" kind: JointType = JointType::Hinge, JOINTS, "Kind of motion.";
-        "group" group: usize = 0, int(0, MAX_GROUP), "Visual group.";
+        "group" group: i32 = 0, int(MIN_GROUP, MAX_GROUP), "Visual group.";
         "pos" pos: Vec3 = [0.0; 3], reals(3, Any), "Anchor in the body, m.";
         "axis" axis: Vec3 = [0.0, 0.0, 1.0], reals(3, Any), "Axis in the body.";
         "limited" limited: AutoBool = AutoBool::Auto, TRI, "Whether the limit is enforced.";
@@ -61,7 +61,7 @@ table! {
     /// `<freejoint>`. It takes no defaults: only `<joint type="free">` has a class.
     element FreeJoint {
         "name" name: String = String::new(), TEXT, own, "Name.";
-        "group" group: usize = 0, int(0, MAX_GROUP), "Visual group.";
+        "group" group: i32 = 0, int(MIN_GROUP, MAX_GROUP), "Visual group.";
         "align" align: AutoBool = AutoBool::Auto, TRI, "Whether the frame of the body is moved into its centre of mass and along its principal axes, where no other bodies are in it; `auto`: as `alignfree` of the compiler.";
     }
 }
@@ -78,7 +78,7 @@ table! {
         "conaffinity" conaffinity: u32 = 1, int(MIN_BITS, MAX_BITS), "Bits that meet `contype` of others.";
         "condim" condim: usize = 3, int(1, 6), "Dimension of its contacts: 1, 3, 4 or 6.";
         "priority" priority: i32 = 0, int(i32::MIN as i64, i32::MAX as i64), "Priority where contact parameters are mixed.";
-        "group" group: usize = 0, int(0, MAX_GROUP), "Visual group.";
+        "group" group: i32 = 0, int(MIN_GROUP, MAX_GROUP), "Visual group.";
         "friction" friction: [f64; 3] = [1.0, 0.005, 0.0001], some(1, 3, NonNegative), "Sliding, torsional and rolling friction.";
         "solmix" solmix: f64 = 1.0, real(NonNegative), "Weight where contact parameters are mixed.";
         "solref" solref: [f64; 2] = SOLREF, some(1, 2, Any), "`solref` of contacts.";
@@ -108,7 +108,7 @@ table! {
         "name" name: String = String::new(), TEXT, own, "Name.";
         "type" kind: GeomType = GeomType::Sphere, SITE_SHAPES, "Shape.";
         "size" size: Vec3 = [0.005; 3], some(1, 3, NonNegative), "Size, m: radius, half lengths.";
-        "group" group: usize = 0, int(0, MAX_GROUP), "Visual group.";
+        "group" group: i32 = 0, int(MIN_GROUP, MAX_GROUP), "Visual group.";
         "fromto" fromto: Option<[f64; 6]> = None, reals(6, Any), "Both ends of an elongated shape, m, in place of pose and length.";
         "rgba" rgba: [f64; 4] = GREY, reals(4, Any), "Colour and opacity.";
         "material" material: Option<String> = None, TEXT, "Material.";

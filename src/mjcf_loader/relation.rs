@@ -7,7 +7,7 @@ use super::attribute::{AttributeField, FLAG, Kind, RANGE, TEXT, Value, int, real
 use super::error::UNREAD;
 use super::schema::Element;
 use super::table::{Table, table};
-use super::words::{AutoBool, GREY, MAX_GROUP, SOLIMP, SOLREF, TRI};
+use super::words::{AutoBool, GREY, MAX_GROUP, MIN_GROUP, SOLIMP, SOLREF, TRI};
 
 table! {
     /// `<pair>`.
@@ -212,7 +212,7 @@ table! {
         "stiffness" stiffness: f64 = 0.0, real(NonNegative), "Stiffness of the spring.";
         "damping" damping: f64 = 0.0, real(NonNegative), "Damping.";
         "user" user: Vec<f64> = Vec::new(), Kind::User, "Numbers for programs.";
-        "group" group: usize = 0, int(0, MAX_GROUP), "Visual group.";
+        "group" group: i32 = 0, int(MIN_GROUP, MAX_GROUP), "Visual group.";
     }
 }
 

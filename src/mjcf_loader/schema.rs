@@ -150,6 +150,8 @@ fn meant<'a>(
             None => Err(ErrorKind::UnknownAttribute(name.to_owned())),
         },
         Some(LaterAttribute::Refused) => Err(ErrorKind::LaterAttribute(name.to_owned())),
+        // MuJoCo reads these where it reads bodies, and looks for the attributes that it knows only
+        None if ["frame", "replicate"].contains(&rule.name) => Ok(None),
         None => Err(ErrorKind::UnknownAttribute(name.to_owned())),
     }
 }

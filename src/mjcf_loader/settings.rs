@@ -189,7 +189,7 @@ table! {
         "njmax" njmax: Option<i64> = None, int(-1, i64::MAX), "Memory of MuJoCo. Ignored.";
         "nstack" nstack: Option<i64> = None, int(-1, i64::MAX), "Memory of MuJoCo. Ignored.";
         "memory" memory: Option<String> = None, Kind::Memory, "Memory of MuJoCo. Ignored.";
-        "nkey" nkey: usize = 0, int(0, MAX_KEYS), "Least number of keyframes; those that are not given hold the reference configuration.";
+        "nkey" nkey: i64 = 0, int(i32::MIN as i64, MAX_KEYS), "Least number of keyframes; those that are not given hold the reference configuration.";
     }
 }
 

@@ -18,7 +18,7 @@ table! {
         "texcoord" texcoord: Vec<f64> = Vec::new(), Kind::Data, "Texture coordinates of the vertices, two numbers each.";
         "rgba" rgba: [f64; 4] = [0.5, 0.5, 0.5, 1.0], reals(4, Any), "Colour and opacity.";
         "inflate" inflate: f64 = 0.0, real(Any), "How far vertices are moved along their normals, m.";
-        "group" group: usize = 0, int(0, MAX_SKIN_GROUP), "Visual group; 0 to 2 are drawn.";
+        "group" group: i32 = 0, int(0, MAX_SKIN_GROUP), "Visual group; 0 to 2 are drawn.";
     }
 }
 

@@ -11,7 +11,8 @@ pub(super) const SOLREF: [f64; 2] = [0.02, 1.0];
 pub(super) const SOLIMP: [f64; 5] = [0.9, 0.95, 0.001, 0.5, 2.0];
 pub(super) const GREY: [f64; 4] = [0.5, 0.5, 0.5, 1.0];
 
-/// Groups from 5 on are drawn, and seen by rays, alike.
+/// Groups from 5 on are drawn alike, as are those up to 0.
+pub(super) const MIN_GROUP: i64 = i32::MIN as i64;
 pub(super) const MAX_GROUP: i64 = i32::MAX as i64;
 /// Greatest group of a skin.
 pub(super) const MAX_SKIN_GROUP: i64 = 5;

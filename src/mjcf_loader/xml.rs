@@ -376,10 +376,8 @@ impl FileReader<'_> {
             let what = "an include is empty: put comments before it";
             return fail(ErrorKind::Invalid(what));
         }
-        if let Some((name, _)) = node.attributes.iter().find(|(name, _)| name != "file") {
-            return fail(ErrorKind::UnknownAttribute(name.clone()));
-        }
-        let Some((_, file)) = node.attributes.first() else {
+        // MuJoCo looks at no other attribute
+        let Some(file) = node.attribute("file") else {
             return fail(ErrorKind::MissingAttribute("file"));
         };
         if level > self.tree.limits.include_depth {
@@ -396,19 +394,12 @@ impl FileReader<'_> {
         let text = text_of(&bytes).map_err(|kind| LoadError::in_file(&path, kind))?;
         self.included.insert(path.clone());
         let root = self.file(&text, &path, depth, level)?;
-        // only the children of the root are included, so its attributes would be lost
-        match self.tree.nodes[root]
-            .attributes
-            .iter()
-            .find(|(name, _)| name != "model")
-        {
-            Some((name, _)) => Err(self.tree.error(root, ErrorKind::UnknownAttribute(name.clone()))),
-            None if self.tree.nodes[root].children.is_empty() => {
-                let what = "the file has no elements: give it some, or remove what includes it";
-                Err(self.tree.error(root, ErrorKind::Invalid(what)))
-            }
-            None => Ok(root),
+        // only the children of the root are included; MuJoCo looks at none of its attributes
+        if self.tree.nodes[root].children.is_empty() {
+            let what = "the file has no elements: give it some, or remove what includes it";
+            return Err(self.tree.error(root, ErrorKind::Invalid(what)));
         }
+        Ok(root)
     }
 
     /// Returns the path of a file to include: beside the document, or else beside the file that includes it.

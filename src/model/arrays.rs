@@ -152,7 +152,7 @@ arrays! {
     /// `solimp` of each joint's limit (njnt, 5); see [Solver parameters](#solver-parameters).
     jnt_solimp: Vec<[f64; 5]>,
     /// Group of each joint for visualization (njnt), no effect here.
-    jnt_group: Vec<usize>,
+    jnt_group: Vec<i32>,
     /// Numbers for programs (njnt, `nuser_jnt`), no unit. Physics and pictures ignore them.
     jnt_user: Vec<Vec<f64>>,
 
@@ -228,8 +228,8 @@ arrays! {
     geom_aabb: Vec<[f64; 6]>,
     /// Radius of each geom's bounding sphere (ngeom), m; 0 for planes.
     geom_rbound: Vec<f64>,
-    /// Group of each geom for visualization (ngeom); 0 to 2 are drawn.
-    geom_group: Vec<usize>,
+    /// Group of each geom for visualization (ngeom); those up to 2 are drawn.
+    geom_group: Vec<i32>,
     /// Red, green, blue, opacity of each geom (ngeom, 4), 0..1, which count without a material.
     geom_rgba: Vec<[f64; 4]>,
     /// Material of each geom (ngeom), by its index in [`Arrays::materials`]; `None` without one.
@@ -251,8 +251,8 @@ arrays! {
     site_quat: Vec<Quat>,
     /// Which frame of its body each site's frame coincides with, if any (nsite): MuJoCo's `mjtSameFrame`.
     site_sameframe: Vec<SameFrame>,
-    /// Group of each site for visualization (nsite); 0 to 2 are drawn.
-    site_group: Vec<usize>,
+    /// Group of each site for visualization (nsite); those up to 2 are drawn.
+    site_group: Vec<i32>,
     /// Red, green, blue, opacity of each site (nsite, 4), 0..1, which count without a material.
     site_rgba: Vec<[f64; 4]>,
     /// Material of each site (nsite), by its index in [`Arrays::materials`]; `None` without one.
@@ -371,8 +371,8 @@ arrays! {
     tendon_invweight0: Vec<f64>,
     /// Length of each tendon at `qpos0` (ntendon): m for spatial tendons.
     tendon_length0: Vec<f64>,
-    /// Group of each tendon for visualization (ntendon); 0 to 2 are drawn.
-    tendon_group: Vec<usize>,
+    /// Group of each tendon for visualization (ntendon); those up to 2 are drawn.
+    tendon_group: Vec<i32>,
     /// Radius with which each tendon is drawn (ntendon), m.
     tendon_width: Vec<f64>,
     /// Red, green, blue, opacity of each tendon (ntendon, 4), 0..1, which count without a material.

@@ -20,7 +20,7 @@ pub struct Skin {
     /// How far vertices are moved along their normals, m (`skin_inflate`).
     pub inflate: f64,
     /// Visual group (`skin_group`).
-    pub group: usize,
+    pub group: i32,
     /// Material, by id (`skin_matid`).
     pub material: Option<usize>,
 }

@@ -16,7 +16,7 @@ use crate::texture::{TextureLoader, TexturePixels};
 use crate::view::{Poses, View};
 
 /// Groups of geoms, sites, tendons and skins that are visible.
-const VISIBLE_GROUPS: std::ops::Range<usize> = 0..3;
+const VISIBLE_GROUPS: std::ops::RangeTo<i32> = ..3;
 /// Number of lights that fixed-function OpenGL guarantees.
 const MAX_LIGHTS: usize = 8;
 

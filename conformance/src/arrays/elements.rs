@@ -4,7 +4,7 @@ use babybench::Model;
 use babybench::model::{Keyframe, ObjType};
 
 use super::relations::wrap;
-use super::{Named, addresses, flags, flat, ids, optional, shapes, users};
+use super::{Named, addresses, flags, flat, groups, ids, optional, shapes, users};
 
 pub(super) fn of_bodies(m: &Model) -> Named {
     vec![
@@ -44,7 +44,7 @@ pub(super) fn of_joints(m: &Model) -> Named {
         ("jnt_stiffness", m.jnt_stiffness.clone()),
         ("jnt_solref", flat(&m.jnt_solref)),
         ("jnt_solimp", flat(&m.jnt_solimp)),
-        ("jnt_group", ids(&m.jnt_group)),
+        ("jnt_group", groups(&m.jnt_group)),
         ("dof_bodyid", ids(&m.dof_bodyid)),
         ("dof_jntid", ids(&m.dof_jntid)),
         ("dof_parentid", optional(&m.dof_parentid)),
@@ -129,7 +129,7 @@ pub fn unrecorded(m: &Model) -> Named {
         ("tendon_solref_fri", flat(&m.tendon_solref_fri)),
         ("tendon_solimp_fri", flat(&m.tendon_solimp_fri)),
         ("tendon_length0", m.tendon_length0.clone()),
-        ("tendon_group", ids(&m.tendon_group)),
+        ("tendon_group", groups(&m.tendon_group)),
         ("tendon_width", m.tendon_width.clone()),
         ("tendon_rgba", flat(&m.tendon_rgba)),
         ("tendon_matid", optional(&m.tendon_matid)),

@@ -2,7 +2,7 @@
 
 use babybench::Model;
 
-use super::{Named, flat, ids, optional};
+use super::{Named, flat, groups, optional};
 
 /// Returns the arrays that only change what is drawn.
 pub fn looks(m: &Model) -> Named {
@@ -11,10 +11,10 @@ pub fn looks(m: &Model) -> Named {
 
 fn of_colours(m: &Model) -> Named {
     vec![
-        ("geom_group", ids(&m.geom_group)),
+        ("geom_group", groups(&m.geom_group)),
         ("geom_rgba", flat(&m.geom_rgba)),
         ("geom_matid", optional(&m.geom_matid)),
-        ("site_group", ids(&m.site_group)),
+        ("site_group", groups(&m.site_group)),
         ("site_rgba", flat(&m.site_rgba)),
         ("site_matid", optional(&m.site_matid)),
     ]

@@ -22,6 +22,10 @@ fn ids(values: &[usize]) -> Vec<f64> {
     values.iter().map(|&v| v as f64).collect()
 }
 
+fn groups(values: &[i32]) -> Vec<f64> {
+    values.iter().map(|&v| f64::from(v)).collect()
+}
+
 fn flags(values: &[bool]) -> Vec<f64> {
     values.iter().map(|&v| f64::from(u8::from(v))).collect()
 }

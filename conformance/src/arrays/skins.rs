@@ -13,7 +13,7 @@ pub fn of_skins(m: &Model) -> Named {
     let singles = |values: Vec<f32>| values.into_iter().map(f64::from).collect::<Vec<_>>();
     vec![
         ("skin_matid", each(|skin| skin.material.map_or(-1.0, |m| m as f64))),
-        ("skin_group", each(|skin| skin.group as f64)),
+        ("skin_group", each(|skin| f64::from(skin.group))),
         (
             "skin_rgba",
             m.skins

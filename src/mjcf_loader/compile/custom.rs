@@ -71,10 +71,12 @@ fn check_element(context: &Context, element: &TupleElement, ids: &Ids) -> Result
 
 /// Compiles the keyframes, after everything that has coordinates or controls.
 pub(super) fn compile_keys(context: &Context, document: &Document, arrays: &mut Arrays) -> Result<(), LoadError> {
+    // fewer than none are none
+    let least = usize::try_from(document.size.nkey).unwrap_or(0);
     let numbers = arrays.nq + arrays.nv + arrays.na + arrays.nu() + 7 * arrays.nmocap;
     let (limit, most) = (
         context.tree.limits.key_numbers,
-        document.size.nkey.max(document.keys.len()) + document.moved_keys.len(),
+        least.max(document.keys.len()) + document.moved_keys.len(),
     );
     if most.saturating_mul(numbers) > limit {
         let at = document.keys.last().map_or(0, |key| key.at);
@@ -95,7 +97,7 @@ pub(super) fn compile_keys(context: &Context, document: &Document, arrays: &mut 
         mpos: mocap_poses(arrays).map(|pose| pose.0).collect(),
         mquat: mocap_poses(arrays).map(|pose| pose.1).collect(),
     };
-    let missing = document.size.nkey.saturating_sub(arrays.keys.len());
+    let missing = least.saturating_sub(arrays.keys.len());
     arrays.keys.extend(std::iter::repeat_n(reference.clone(), missing));
     let last_unnamed = document.moved_keys.iter().rposition(|key| key.name.is_empty());
     for (at, key) in document.moved_keys.iter().enumerate() {

@@ -4,6 +4,8 @@
 //! bodies in it, with the number of the copy behind their names. Elements outside that refer to it by name are copied beside it, as far as
 //! all or, of some kinds, a part of what they refer to was copied; those that refer to the original go with it.
 
+use std::collections::BTreeSet;
+
 use super::Classes;
 use super::insertion::{Insertion, known};
 use super::keys::{resize_keys, say_keys};
@@ -87,6 +89,7 @@ impl ReplicateContent {
             let what = "the world has no joints and no inertia";
             return Err(tree.error(joint.at, ErrorKind::Invalid(what)));
         }
+        distinct(document, tree)?;
         let ends = (document.bodies.len(), document.frames.len());
         // nested <replicate>s multiply: a few of them in a row ask for billions of elements
         let each = amount(&document.bodies[self.body..]) + ends.1 - self.frame;
@@ -239,6 +242,23 @@ fn amount(bodies: &[Body]) -> usize {
         .iter()
         .map(|body| hanging(body).count() + body.lights.len())
         .sum()
+}
+
+/// Refuses a name that two elements of a kind have: of those that refer to copies, one may be lost before the compiler looks.
+fn distinct(document: &Document, tree: &Tree) -> Result<(), LoadError> {
+    let tendons = document.tendons.iter().map(|e| (e.at, "tendon", &e.name));
+    let actuators = document.actuators.iter().map(|e| (e.at, "actuator", &e.name));
+    let equalities = document.equalities.iter().map(|e| (e.at, "equality", &e.name));
+    let sensors = document.sensors.iter().map(|e| (e.at, "sensor", &e.name));
+    let mut seen = BTreeSet::new();
+    let named = tendons.chain(actuators).chain(equalities).chain(sensors);
+    for (at, kind, name) in named.filter(|(.., name)| !name.is_empty()) {
+        if !seen.insert((kind, name)) {
+            let name = name.clone();
+            return Err(tree.error(at, ErrorKind::DuplicateName { kind, name }));
+        }
+    }
+    Ok(())
 }
 
 /// Counts the elements that are searched for references to a copy.

@@ -243,3 +243,42 @@ fn what_is_only_drawn_is_left_out_and_still_weighs() {
          this material",
     );
 }
+
+#[test]
+fn groups_of_any_sign_and_unknown_attributes_of_frames_are_taken() {
+    let world = "<geom size='1' group='-3'/><site group='7'/><frame foo='a'><geom size='1'/></frame>\
+        <replicate count='2' prefix='a'><geom name='g' size='1'/></replicate>";
+    let text = format!("<mujoco><worldbody>{world}</worldbody></mujoco>");
+    let arrays = load_str(&text, "m.xml", &source(&[])).expect("loads").arrays;
+    assert_eq!((arrays.geom_group, arrays.site_group), (vec![-3, 0, 0, 0], vec![7]));
+    assert_eq!(arrays.geom_name[2..], ["g0", "g1"]);
+    check_world("<frame pos='a'/>", "frame: pos: 1 values, expected 3 to 3");
+}
+
+#[test]
+fn names_beside_copies_are_used_once() {
+    let lost = "<worldbody><replicate count='2'><site name='a'/></replicate><site name='b'/></worldbody>\
+        <tendon><spatial name='t'><site site='a'/><site site='b'/></spatial></tendon>\
+        <actuator><motor name='m' tendon='t0'/><motor name='m' tendon='t1'/></actuator>";
+    check(lost, "mujoco/actuator/motor: actuator name \"m\" is used twice");
+}
+
+#[test]
+fn zeros_and_negative_counts_say_nothing() {
+    let servo = |attributes: &str| {
+        let text = format!(
+            "<mujoco><size nkey='-5'/><worldbody><body><joint name='j'/><geom size='1'/></body></worldbody>\
+             <actuator><position joint='j' kp='3' {attributes}/></actuator></mujoco>"
+        );
+        let arrays = load_str(&text, "m.xml", &source(&[])).expect("loads").arrays;
+        assert!(arrays.keys.is_empty());
+        arrays.actuator_biasprm[0][2]
+    };
+    assert_eq!(servo("kv='1' dampratio='0'"), -1.0);
+    assert_eq!(servo("kv='0' dampratio='1'"), 1.0);
+    assert_eq!(servo("kv='0\u{b}' dampratio='0'"), 0.0);
+    check_with_bodies(
+        "<actuator><position joint='j' kv='1' dampratio='1'/></actuator>",
+        "mujoco/actuator/position: kv and dampratio are two ways to say the same: give one of them",
+    );
+}

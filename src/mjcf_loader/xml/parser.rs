@@ -1,6 +1,9 @@
 //! The text of one file -> elements of the tree.
 
+use std::borrow::Cow;
+
 use quick_xml::XmlVersion;
+use quick_xml::events::attributes::Attribute;
 use quick_xml::events::{BytesStart, Event};
 use quick_xml::reader::Reader;
 
@@ -77,6 +80,7 @@ impl<'t> Parser<'t> {
     /// Returns the root of the file.
     pub fn run(mut self) -> Result<usize, LoadError> {
         let mut reader = Reader::from_str(self.cursor.text);
+        reader.config_mut().allow_dangling_amp = true;
         loop {
             self.cursor.advance(reader.buffer_position());
             match reader.read_event() {
@@ -165,6 +169,35 @@ impl<'t> Parser<'t> {
     }
 }
 
+/// Escapes the ampersands that begin neither one of XML's own entities nor a character by its number.
+fn escape_ampersands(text: Cow<'_, str>) -> Cow<'_, str> {
+    let reference = |behind: &str| {
+        let number = |digits: &str, is_digit: fn(&char) -> bool| {
+            let end = digits.find(|c| !is_digit(&c)).filter(|&end| end > 0);
+            end.is_some_and(|end| digits[end..].starts_with(';'))
+        };
+        ["amp;", "lt;", "gt;", "quot;", "apos;"]
+            .iter()
+            .any(|entity| behind.starts_with(entity))
+            || behind
+                .strip_prefix("#x")
+                .is_some_and(|digits| number(digits, char::is_ascii_hexdigit))
+            || behind
+                .strip_prefix('#')
+                .is_some_and(|digits| number(digits, char::is_ascii_digit))
+    };
+    let mut parts = text.split('&');
+    let mut escaped = parts.next().unwrap_or_default().to_owned();
+    let mut bare = false;
+    for behind in parts {
+        let known = reference(behind);
+        bare |= !known;
+        escaped.push_str(if known { "&" } else { "&amp;" });
+        escaped.push_str(behind);
+    }
+    if bare { escaped.into() } else { text }
+}
+
 fn attributes(start: &BytesStart, limit: usize) -> Result<Vec<(String, String)>, ErrorKind> {
     let mut found: Vec<(String, String)> = Vec::new();
     // The check for duplicates is ours: with the limit it cannot become quadratic in the size of the file.
@@ -180,6 +213,11 @@ fn attributes(start: &BytesStart, limit: usize) -> Result<Vec<(String, String)>,
         if found.iter().any(|(other, _)| other == name) {
             return Err(ErrorKind::DuplicateAttribute(name.to_owned()));
         }
+        // as in MuJoCo, an ampersand that begins no entity of XML is itself
+        let attribute = Attribute {
+            value: escape_ampersands(attribute.value),
+            ..attribute
+        };
         let value = attribute
             .normalized_value(XmlVersion::Implicit1_0)
             .map_err(|e| ErrorKind::Xml(e.to_string()))?;
