@@ -1,6 +1,7 @@
 //! Visible geoms, sites, tendons and skins: shape, size, colour.
 
-use crate::math::{MAT3_ID, Mat3, Vec3};
+use crate::lattice::Lattice;
+use crate::math::{MAT3_ID, Mat3, Vec3, dot, sub};
 use crate::model::{GeomType, Model, Skin};
 use crate::single::single;
 use crate::texture::TexturePixels;
@@ -81,13 +82,15 @@ pub struct Drawable {
     pub texture_scale: [f32; 3],
     /// Offset of texture coordinates, see `texture_scale`.
     pub texture_offset: f32,
+    /// Where the light on a plane is computed, if its corners do not do.
+    pub(super) lattice: Option<Lattice>,
     /// Type and size of the element in the model.
     kind: GeomType,
     measured: Vec3,
     /// The upward direction times the length of a tendon that hangs loose; zeros for everything else, m.
     pub(super) rope: Vec3,
-    /// Half of a side that has no end, m.
-    far: f32,
+    /// Half of each side that has no end, m.
+    far: [f32; 2],
     /// Whether the texture keeps its scale when the size changes.
     texuniform: bool,
 }
@@ -103,14 +106,14 @@ pub(super) fn material(model: &Model, element: Element) -> Option<usize> {
 }
 
 /// Returns the shape of an element of the model, its scale and the radius of its bounding sphere (m). `far` is half of
-/// the side of a plane that has no end.
-fn dimensions(kind: GeomType, size: Vec3, far: f32) -> (Shape, [f32; 3], f32) {
+/// the sides of a plane that have no end.
+fn dimensions(kind: GeomType, size: Vec3, far: [f32; 2]) -> (Shape, [f32; 3], f32) {
     let [a, b, c] = single(size);
     let length = |v: [f32; 3]| (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]).sqrt();
-    let extent = |half: f32| if half > 0.0 { half } else { far };
+    let extent = |half: f32, far: f32| if half > 0.0 { half } else { far };
     match kind {
         GeomType::Plane => {
-            let [a, b] = [extent(a), extent(b)];
+            let [a, b] = [extent(a, far[0]), extent(b, far[1])];
             (Shape::Plane, [a, b, 1.0], length([a, b, 0.0]))
         }
         GeomType::Sphere => (Shape::Sphere, [a; 3], a),
@@ -133,6 +136,7 @@ impl Drawable {
             }
             Element::Skin(skin) => (GeomType::Mesh, Skin::SIZE, model.skins[skin].rgba),
         };
+        let far = [far; 2];
         let (shape, scale, radius) = dimensions(kind, size, far);
         let mut drawable = Self {
             element,
@@ -148,6 +152,7 @@ impl Drawable {
             texture: None,
             texture_scale: [1.0; 3],
             texture_offset: 0.0,
+            lattice: None,
             kind,
             measured: size,
             rope: [0.0; 3],
@@ -199,6 +204,31 @@ impl Drawable {
         }
     }
 
+    /// Lights a plane as MuJoCo does, at the corners of a grid. `far` is the distance of the far plane, m.
+    pub(super) fn divide(&mut self, model: &Model, far: f32) {
+        if self.shape == Shape::Plane {
+            let repeat = material(model, self.element).map(|m| model.materials[m].texrepeat);
+            self.far = Lattice::new([0.0; 3], far, repeat).half();
+            self.lattice = Some(Lattice::new(self.measured, far, repeat));
+            let (_, size, radius) = dimensions(self.kind, self.measured, self.far);
+            (self.size, self.radius) = (size, radius);
+        }
+    }
+
+    /// Returns the position of a drawable for a camera: that of the element, but for planes without an end that are lit on a lattice.
+    pub(super) fn centred(&self, pos: Vec3, mat: &Mat3, eye: Vec3) -> Vec3 {
+        let Some(lattice) = &self.lattice else { return pos };
+        let mut centre = pos;
+        for direction in 0..2 {
+            let axis = [mat[direction], mat[3 + direction], mat[6 + direction]];
+            let shift = lattice.shift(direction, dot(sub(eye, pos), axis));
+            for k in 0..3 {
+                centre[k] += shift * axis[k];
+            }
+        }
+        centre
+    }
+
     /// Returns the size of the element in the model.
     pub(super) fn measured(&self) -> Vec3 {
         self.measured
@@ -211,6 +241,7 @@ impl Drawable {
             size,
             radius,
             measured,
+            lattice: self.lattice.map(|lattice| lattice.resized(measured, self.far)),
             ..*self
         };
         if self.texuniform {

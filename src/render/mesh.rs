@@ -360,7 +360,7 @@ impl Mesh {
     }
 
     /// Creates a rectangle at z = 0. MuJoCo draws a fine grid, which looks the same under parallel light without
-    /// highlights.
+    /// highlights. Under other light the renderers light the corners of its grid.
     pub fn plane() -> Self {
         let mut m = Self::default();
         m.band(MeshPart::Body);
@@ -428,5 +428,6 @@ mod tests {
         check(&Mesh::cylinder(), 1736);
         check(&Mesh::cube(), 192);
         check(&Mesh::plane(), 2);
+        check(&crate::lattice::Lattice::new([1.0, 2.0, 0.25], 100.0, None).mesh(), 64);
     }
 }

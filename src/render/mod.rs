@@ -24,7 +24,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! The look is that of MuJoCo's classic renderer: its tessellations, light per vertex, textures with mip levels, four
+//! The look is that of MuJoCo's classic renderer: its tessellations, the grids of its planes, light per vertex, textures with mip levels, four
 //! samples per pixel, no shadows, no gamma. [`Renderer::cpu`] is pure Rust and gives the same bytes on every target.
 //!
 //! Not drawn: shadows, reflections, fog, haze. Planes without a size are drawn as far as the far plane.
@@ -39,6 +39,7 @@ pub mod gpu;
 #[cfg_attr(all(feature = "wgpu", not(target_arch = "wasm32")), path = "native_gpu.rs")]
 #[cfg_attr(not(all(feature = "wgpu", not(target_arch = "wasm32"))), path = "no_gpu.rs")]
 mod gpu_of_build;
+mod lattice;
 mod mesh;
 mod model_mesh;
 mod pair;

@@ -171,6 +171,16 @@ impl Scenery {
         ];
         let mut skins = Vec::new();
         let mut drawables = drawables(model, far as f32, &mut used, (&mut meshes, &mut skins))?;
+        let (headlight, lights) = lights(model);
+        let near = lights.iter().any(|light| light.pos.is_some());
+        let shines = headlight.is_some_and(|[.., specular]| specular != [0.0; 3])
+            || lights.iter().any(|light| light.specular != [0.0; 3]);
+        // parallel light without highlights is the same all over a plane
+        for drawable in &mut drawables {
+            if near || shines && drawable.specular > 0.0 {
+                drawable.divide(model, far as f32);
+            }
+        }
         let sky = model.textures.iter().position(|t| t.kind == TextureType::Skybox);
         let sky = match sky {
             Some(id) => used.texture(id)?,
@@ -189,7 +199,6 @@ impl Scenery {
             drawable.place_texture(model, &textures);
         }
         let vis = &model.vis;
-        let (headlight, lights) = lights(model);
         Ok(Self {
             drawables,
             meshes,

@@ -129,7 +129,13 @@ fn eyes_and_room_cameras_show_what_mujoco_draws() {
 }
 
 fn small_scenes_are_what_mujoco_draws() {
-    for (name, mean) in [("glass", 0.4), ("meshes", 0.05), ("skins", 0.05), ("strings", 0.05)] {
+    for (name, mean) in [
+        ("glass", 0.4),
+        ("lamps", 0.4),
+        ("meshes", 0.05),
+        ("skins", 0.05),
+        ("strings", 0.05),
+    ] {
         let (mut gpu, adapter, mut engine) = open(small(name).0);
         let qpos0 = engine.model().qpos0.clone();
         let state = state(&mut engine, &qpos0);

@@ -123,6 +123,7 @@ impl Frame {
                 continue;
             };
             let drawable = &drawable;
+            let pos = drawable.centred(pos, &mat, eye.pos.map(f64::from));
             let [x, y, z] = eye.locate(single(pos));
             let r = drawable.radius;
             // the side planes of the frustum lean by `tan`; the root makes their normals unit vectors
@@ -211,6 +212,7 @@ impl Frame {
             return;
         };
         let drawable = &drawable;
+        let pos = drawable.centred(pos, &mat, eye.pos.map(f64::from));
         if self.hidden(drawable, eye, single(pos)) {
             return;
         }

@@ -3,8 +3,8 @@
 //! Cache-Friendly Approach to Deferred Shading", Journal of Computer Graphics Techniques 2, 2013).
 //!
 //! The way of an image through the files: `frame` culls and sorts drawables, `facing` culls back faces, `project` and
-//! `triangles` with `clip` transform them, `group` and `small` set triangles up, `raster` fills the `target`, `seen` numbers
-//! and `light` lights what is visible, `shade` with `plane`, `sample`, `flat` and `cube` colours it.
+//! `triangles` with `clip` transform them, `group` and `small` set triangles up, `raster` fills the `target`, `visible` numbers
+//! and `light` lights what is visible, `lit_plane` planes, `shade` with `plane`, `sample`, `flat` and `cube` colours it.
 
 mod camera;
 mod clip;
@@ -15,6 +15,7 @@ mod frame;
 mod group;
 mod lanes;
 mod light;
+mod lit_plane;
 mod pixels;
 mod plane;
 mod project;

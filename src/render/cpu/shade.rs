@@ -6,6 +6,7 @@ use super::camera::ViewCamera;
 use super::frame::Frame;
 use super::lanes::{at_least, four, rounded_down, three};
 use super::light::Vec3x4;
+use super::lit_plane::LitPlane;
 use super::pixels::Pixels;
 use super::plane::{Basis, Planes};
 use super::sky::Rays;
@@ -23,6 +24,8 @@ pub struct Shader {
     rays: Rays,
     /// The shading of each triangle that is seen.
     setups: Vec<TriangleSetup>,
+    /// The planes among them that are lit on a lattice.
+    planes: Vec<LitPlane>,
     /// Colours of the samples of each pixel, in bytes; used where there are transparent drawables.
     samples: Vec<[f32x4; 4]>,
 }
@@ -35,13 +38,15 @@ const COUNT: [f32; 16] = [
 /// The shading of a triangle: its colour and texture coordinates as linear functions.
 #[derive(Clone, Copy, Debug)]
 struct TriangleSetup {
-    /// Colour, divided by w.
+    /// Colour, divided by w; of a plane that is lit on a lattice the place on it.
     colour: Planes,
     texture: Planes,
     /// Factor on red, green and blue.
     tint: [f32; 3],
     /// Index of the texture, or [`NONE`].
     image: u32,
+    /// Index of the plane that it is of, if that is lit on a lattice, or [`NONE`].
+    plane: u32,
 }
 
 impl Shader {
@@ -59,8 +64,14 @@ impl Shader {
         let (w, h) = (frame.size[0], frame.size[1]);
         self.rays.aim(eye, frame.size);
         self.setups.clear();
-        for &id in &self.seen.triangles {
-            let setup = TriangleSetup::new(frame, scenery, &self.seen, &frame.colour.records[id as usize]);
+        self.planes.clear();
+        for k in 0..self.seen.triangles.len() {
+            let id = self.seen.triangles[k];
+            let record = &frame.colour.records[id as usize];
+            let mut setup = TriangleSetup::new(frame, scenery, &self.seen, record);
+            if scenery.drawables[record.draw as usize].lattice.is_some() {
+                setup.plane = self.plane(frame, scenery, poses, eye, record.draw);
+            }
             self.setups.push(setup);
         }
         if !frame.layers.is_empty() {
@@ -88,6 +99,19 @@ impl Shader {
                 pixels.write(out, frame.size, [x, y], &packed(&colours));
             }
         }
+    }
+
+    /// Returns the index of a plane among those that are lit on a lattice, after adding it if it is new.
+    #[cold]
+    fn plane(&mut self, frame: &Frame, scenery: &Scenery, poses: &Poses, eye: &ViewCamera, draw: u32) -> u32 {
+        let known = self.planes.iter().position(|plane| plane.draw == draw);
+        let index = known.or_else(|| {
+            let (drawable, ..) = scenery.drawables[draw as usize].placed(poses)?;
+            let plane = LitPlane::new(draw, &drawable, &frame.draws[draw as usize], eye.pos)?;
+            self.planes.push(plane);
+            Some(self.planes.len() - 1)
+        });
+        index.map_or(NONE, |index| index as u32)
     }
 
     /// Passes on the colours that are seen in a block of 2 x 2 pixels, at the samples with a bit in `part`: four bits for each
@@ -171,7 +195,12 @@ impl Shader {
         }
         let index = frame.colour.records[id as usize].setup;
         let [x, y] = at.map(|v| v as f32 + 0.5);
-        self.setups[index as usize].colours(scenery, x, y, wanted)
+        let setup = &self.setups[index as usize];
+        let light = |x, y| match self.planes.get(setup.plane as usize) {
+            Some(plane) => plane.colours(&self.seen.lights, x, y, wanted),
+            None => [f32x4::ZERO; 3],
+        };
+        setup.colours(scenery, x, y, wanted, light)
     }
 }
 
@@ -224,6 +253,7 @@ impl TriangleSetup {
             texture: Planes::default(),
             tint: [1.0; 3],
             image: NONE,
+            plane: NONE,
         };
         let Some(image) = scenery.drawables[record.draw as usize].texture else {
             return setup;
@@ -241,13 +271,23 @@ impl TriangleSetup {
         setup
     }
 
-    /// Returns the colours of a block of 2 x 2 pixels.
+    /// Returns the colours of a block of 2 x 2 pixels. `light` returns those at places on a plane.
     #[inline(always)]
-    fn colours(&self, scenery: &Scenery, x: f32, y: f32, wanted: [bool; 4]) -> Vec3x4 {
+    fn colours(
+        &self,
+        scenery: &Scenery,
+        x: f32,
+        y: f32,
+        wanted: [bool; 4],
+        light: impl Fn(f32x4, f32x4) -> Vec3x4,
+    ) -> Vec3x4 {
         let [r, g, b, w] = f32x4::transpose(self.colour.block(x, y));
         // the perspective division: one for each pixel instead of one for each channel
         let w = f32x4::ONE / w;
-        let colours = [r * w, g * w, b * w];
+        let mut colours = [r * w, g * w, b * w];
+        if self.plane != NONE {
+            colours = light(colours[0], colours[1]);
+        }
         if self.image == NONE {
             return three(|k| colours[k] * self.tint[k]);
         }

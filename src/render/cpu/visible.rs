@@ -18,7 +18,7 @@ use crate::view::Poses;
 pub struct VisibleTriangles {
     /// Indices of the records of triangles.
     pub triangles: Vec<u32>,
-    lights: Vec<PlacedLight>,
+    pub lights: Vec<PlacedLight>,
     /// For each vertex of the frame, 1 if it is seen.
     marks: Vec<u8>,
     /// Index into `lit` for each vertex that is seen.
@@ -31,7 +31,7 @@ pub struct VisibleTriangles {
 /// A lit vertex of a visible triangle.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct LitVertex {
-    /// Red, green, blue, 1.
+    /// Red, green, blue, 1; of a plane with a [`Lattice`](crate::lattice::Lattice) the place on it, m, 0, 1.
     pub colour: f32x4,
     /// Texture coordinates, 0.
     pub texture: f32x4,
@@ -55,7 +55,11 @@ impl LitVertex {
             at,
             normal: three(|k| lanes(&|i| mesh.normal[i][k])),
         };
-        let [r, g, b] = light::vertices(lights, drawable, draw, eye.pos, &corners);
+        // of a plane that is lit on a lattice, what is interpolated is the place on it
+        let [r, g, b] = match drawable.lattice {
+            Some(_) => [at[0] * drawable.size[0], at[1] * drawable.size[1], f32x4::ZERO],
+            None => light::vertices(lights, drawable, draw, eye.pos, &corners),
+        };
         let [s, t, u] = if mesh.texcoord.is_empty() {
             three(|k| at[k] * drawable.texture_scale[k] + drawable.texture_offset)
         } else {

@@ -182,6 +182,7 @@ impl SubmissionData {
                 continue;
             };
             let drawable = &drawable;
+            let pos = drawable.centred(pos, &mat, eye.pos.map(f64::from));
             let at = eye.locate(single(pos));
             // drawables inside their image need no clipping at its border, so those of all views share one call
             let Some(whole) = seen(eye, at, drawable.radius, r.scenery.far as f32) else {
@@ -308,6 +309,7 @@ fn behind(eye: &ViewCamera, drawable: &Drawable, pos: Vec3f, mat: &crate::math::
 fn instance(r: &Submission, eye: &ViewCamera, view: usize, drawable: &Drawable, own: bool) -> Option<[f32; INSTANCE]> {
     let (drawable, pos, mat) = drawable.placed(&r.requests[view].poses)?;
     let drawable = &drawable;
+    let pos = drawable.centred(pos, &mat, eye.pos.map(f64::from));
     let [x, y, z] = eye.model(pos, &mat, drawable.size);
     let [sx, sy, length] = drawable.size;
     let cap = 0.5 * (sx + sy);

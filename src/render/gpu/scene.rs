@@ -45,7 +45,9 @@ pub struct GpuScene {
 
 impl GpuScene {
     pub fn new(gpu: &Gpu, layouts: &Layouts, scenery: &Scenery) -> Self {
-        let (vertices, indices, ranges) = geometry(scenery);
+        let (vertices, indices, ranges, grids) = geometry(scenery);
+        let worn: usize = scenery.skins.iter().map(SkinLook::count).sum();
+        let flipped = scenery.meshes.len() + worn;
         let buffer = |label, contents: &[u8], usage| {
             let label = Some(label);
             gpu.device
@@ -56,16 +58,20 @@ impl GpuScene {
             Some(TexturePixels::Flat(_)) => ColourSource::Image,
             Some(TexturePixels::Cube(_)) => ColourSource::Cube,
         };
-        let behind = |d: &Drawable| match d.shape {
-            Shape::Plane => ranges.len() - 1,
-            _ => d.mesh,
+        // meshes of a drawable seen from the front and from behind
+        let sides = |(d, grid): (&Drawable, &Option<usize>)| match (grid, d.shape) {
+            (Some(grid), _) => [*grid, *grid + 1],
+            (None, Shape::Plane) => [d.mesh, flipped],
+            (None, _) => [d.mesh; 2],
         };
         // keys in drawing order
-        let keys = |mesh: &dyn Fn(&Drawable) -> usize| -> Vec<_> {
-            let key = |d: &Drawable| (paint(d), d.texture, mesh(d));
-            scenery.drawables.iter().map(key).collect()
+        let keys = |side: usize| -> Vec<_> {
+            let drawables = scenery.drawables.iter().zip(&grids);
+            drawables
+                .map(|(d, grid)| (paint(d), d.texture, sides((d, grid))[side]))
+                .collect()
         };
-        let (front, back) = (keys(&|d| d.mesh), keys(&behind));
+        let (front, back) = (keys(0), keys(1));
         let mut index: BTreeMap<_, usize> = front.iter().chain(&back).map(|&k| (k, 0)).collect();
         let mut classes = Vec::with_capacity(index.len());
         for (&(paint, texture, mesh), at) in &mut index {
@@ -75,9 +81,7 @@ impl GpuScene {
                 paint,
                 texture,
                 indices,
-                worn: mesh
-                    .checked_sub(scenery.meshes.len())
-                    .filter(|_| mesh + 1 < ranges.len()),
+                worn: mesh.checked_sub(scenery.meshes.len()).filter(|_| mesh < flipped),
             });
         }
         Self {
@@ -115,9 +119,10 @@ pub fn add_vertices(mesh: &Mesh, vertices: &mut Vec<f32>) {
     }
 }
 
-/// Lists vertices, indices, and the range of indices of each mesh: those of [`Scenery::meshes`], those of skins, without vertices, then the
-/// plane seen from behind.
-fn geometry(scenery: &Scenery) -> (Vec<f32>, Vec<u32>, Vec<Range<u32>>) {
+/// Lists vertices, indices, and the range of indices of each mesh: those of [`Scenery::meshes`], those of skins, without vertices, the
+/// plane seen from behind, then, of each plane that is lit on a lattice, its grid from both sides. Last comes the index of the first of
+/// these for each drawable.
+fn geometry(scenery: &Scenery) -> (Vec<f32>, Vec<u32>, Vec<Range<u32>>, Vec<Option<usize>>) {
     let (mut vertices, mut indices, mut ranges) = (Vec::new(), Vec::new(), Vec::new());
     let mut add = |mesh: &Mesh, first: u32, flipped: bool| {
         let start = indices.len() as u32;
@@ -139,7 +144,20 @@ fn geometry(scenery: &Scenery) -> (Vec<f32>, Vec<u32>, Vec<Range<u32>>) {
     let plane = &scenery.meshes[Shape::Plane as usize];
     add(plane, first, true);
     add_vertices(plane, &mut vertices);
-    (vertices, indices, ranges)
+    first += plane.x.len() as u32;
+    let mut next = scenery.meshes.len() + scenery.skins.iter().map(SkinLook::count).sum::<usize>() + 1;
+    let mut grids = vec![None; scenery.drawables.len()];
+    for (drawable, grid) in scenery.drawables.iter().zip(&mut grids) {
+        let Some(lattice) = &drawable.lattice else { continue };
+        let mesh = lattice.mesh();
+        add(&mesh, first, false);
+        add(&mesh, first, true);
+        add_vertices(&mesh, &mut vertices);
+        first += mesh.x.len() as u32;
+        *grid = Some(next);
+        next += 2;
+    }
+    (vertices, indices, ranges, grids)
 }
 
 /// Fills the uniform block `Scene` of the shader.
