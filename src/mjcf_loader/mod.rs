@@ -36,6 +36,7 @@ mod composite;
 mod custom;
 mod document;
 mod draft;
+pub mod edit;
 mod elements;
 mod error;
 mod later;

@@ -33,6 +33,16 @@ pub(super) struct Element {
 }
 
 impl Element {
+    /// Makes an element of a document that is edited, without children.
+    pub fn of(name: &'static str, values: Vec<(&'static str, Value)>) -> Self {
+        Self {
+            at: 0,
+            name,
+            values,
+            children: Vec::new(),
+        }
+    }
+
     /// Makes an element without attributes and children.
     #[cfg(test)]
     pub fn bare(rule: &'static Rule) -> Self {

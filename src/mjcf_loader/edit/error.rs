@@ -1,0 +1,101 @@
+//! What can go wrong while a document is edited.
+
+use super::{ElementId, Settings};
+use crate::error::{ErrorKind, LoadError};
+use crate::text::quoted;
+
+/// An edit that is refused. The document is as it was before.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum EditError {
+    /// An element that may not stand in another.
+    #[error("<{parent}> cannot hold <{}>{}", quoted(.name), hint(.nearest))]
+    UnknownElement {
+        /// The element around it.
+        parent: &'static str,
+        /// The name asked for.
+        name: String,
+        /// A name that may have been meant.
+        nearest: Option<&'static str>,
+    },
+    /// An attribute that an element does not have.
+    #[error("<{element}> has no attribute \"{}\"{}", quoted(.name), hint(.nearest))]
+    UnknownAttribute {
+        /// The element.
+        element: &'static str,
+        /// The attribute asked for.
+        name: String,
+        /// A name that may have been meant.
+        nearest: Option<&'static str>,
+    },
+    /// A value that an attribute cannot have.
+    #[error("<{element}>: {kind}")]
+    Value {
+        /// The element.
+        element: &'static str,
+        /// Description of the fault.
+        kind: ErrorKind,
+    },
+    /// An element that is not in the document, or no longer.
+    #[error("{0} is not in this document: it was removed, or belongs to another document")]
+    NoElement(ElementId),
+    /// An element without which there is no document.
+    #[error("<{0}> cannot be removed: a document needs it")]
+    Needed(&'static str),
+    /// No element of this kind has the name.
+    #[error("there is no {kind} \"{}\"", quoted(.name))]
+    UnknownName {
+        /// Kind of element.
+        kind: &'static str,
+        /// The name.
+        name: String,
+    },
+    /// Two elements of a kind with the same name.
+    #[error("{kind} name \"{}\" is used twice: attach with another prefix or suffix", quoted(.name))]
+    DuplicateName {
+        /// Kind of element.
+        kind: &'static str,
+        /// The name.
+        name: String,
+    },
+    /// An element that cannot be attached.
+    #[error("cannot attach: {0}")]
+    Unattachable(&'static str),
+    /// Documents with different settings of `compiler`, by which the numbers of one would change their meaning in the other.
+    #[error("cannot attach: compiler has {0}: set it alike in both documents")]
+    Settings(Box<Settings>),
+    /// A default class that does not exist.
+    #[error("unknown default class \"{}\"", quoted(.0))]
+    UnknownClass(String),
+    /// An attribute that has no default, so that a class cannot turn back what the main class of the other document says.
+    #[error(
+        "cannot attach: the main default class gives <{element}> {attribute}, which the attached elements would get: give them a value for it"
+    )]
+    Inherited {
+        /// The element.
+        element: &'static str,
+        /// The attribute.
+        attribute: &'static str,
+    },
+    /// A document that cannot be read or compiled.
+    #[error(transparent)]
+    Load(#[from] LoadError),
+}
+
+fn hint(nearest: &Option<&'static str>) -> String {
+    nearest.map_or_else(String::new, |name| format!("; did you mean \"{name}\"?"))
+}
+
+/// Returns the known name nearest to `text`, if it is so near that it was probably meant.
+pub(super) fn nearest(text: &str, known: impl Iterator<Item = &'static str>) -> Option<&'static str> {
+    const LONGEST: usize = 64; // the distance costs the product of the lengths
+    if text.len() > LONGEST {
+        return None;
+    }
+    let text = text.to_ascii_lowercase();
+    known
+        .map(|name| (strsim::damerau_levenshtein(&text, &name.to_ascii_lowercase()), name))
+        .filter(|(distance, name)| *distance <= 1 + name.len() / 4)
+        .min_by_key(|(distance, _)| *distance)
+        .map(|(_, name)| name)
+}
