@@ -24,6 +24,9 @@ from babybench_core.mujoco import functions as _functions
 from babybench_core.mujoco import jacobians as _jacobians
 from babybench_core.mujoco import maths as _maths
 from babybench_core.mujoco import more_enums as _more_enums
+from babybench_core.mujoco import rays as _rays
+from babybench_core.mujoco import spec as _spec
+from babybench_core.mujoco import vectors as _vectors
 from babybench_core.mujoco.constants import *  # noqa: F403
 from babybench_core.mujoco.data import MjData
 from babybench_core.mujoco.enums import *  # noqa: F403
@@ -34,7 +37,11 @@ from babybench_core.mujoco.maths import *  # noqa: F403
 from babybench_core.mujoco.model import MjModel
 from babybench_core.mujoco.more_enums import *  # noqa: F403
 from babybench_core.mujoco.options import MjOption
+from babybench_core.mujoco.rays import *  # noqa: F403
 from babybench_core.mujoco.renderer import MjvCamera, Renderer, mjv_defaultCamera, mjv_defaultFreeCamera
+from babybench_core.mujoco.scene_option import MjvOption, mjv_defaultOption
+from babybench_core.mujoco.spec import *  # noqa: F403
+from babybench_core.mujoco.vectors import *  # noqa: F403
 
 stands_in = True
 """Tells this module from MuJoCo's own."""
@@ -52,6 +59,7 @@ __all__ = [
     "MjModel",
     "MjOption",
     "MjvCamera",
+    "MjvOption",
     "Renderer",
     "__version__",
     "install",
@@ -66,11 +74,20 @@ __all__ = [
     "mjPI",
     "mjv_defaultCamera",
     "mjv_defaultFreeCamera",
+    "mjv_defaultOption",
     "stands_in",
     "uninstall",
 ]
 __all__ += (
-    _constants.__all__ + _enums.__all__ + _more_enums.__all__ + _functions.__all__ + _jacobians.__all__ + _maths.__all__
+    _constants.__all__
+    + _enums.__all__
+    + _more_enums.__all__
+    + _functions.__all__
+    + _jacobians.__all__
+    + _maths.__all__
+    + _spec.__all__
+    + _rays.__all__
+    + _vectors.__all__
 )
 
 

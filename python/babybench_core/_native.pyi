@@ -20,6 +20,7 @@ __all__ = [
     "Blueprint",
     "Env",
     "Folder",
+    "MjcfDocument",
     "Parts",
     "PhysicsData",
     "PhysicsModel",
@@ -382,6 +383,66 @@ class Watch:
         """Returns the numbers of those that differ, of the same arrays in the same order; the next call compares with these."""
 
 @final
+class MjcfDocument:
+    """A document as a tree of elements, beneath :class:`babybench.mujoco.MjSpec`. Elements are numbers."""
+
+    def __new__(cls) -> MjcfDocument: ...
+    @staticmethod
+    def from_text(text: str, path: str, files: Mapping[str, bytes], folder: str | os.PathLike[str]) -> MjcfDocument:
+        """Reads a text, with files that replace those in and around a folder."""
+    @staticmethod
+    def from_file(path: str, files: Mapping[str, bytes], folder: str | os.PathLike[str]) -> MjcfDocument:
+        """Reads a file of a folder."""
+    def copy(self) -> MjcfDocument:
+        """Returns a document of its own with the same elements under the same numbers."""
+    def root(self) -> int:
+        """Returns the element of the whole document."""
+    def world(self) -> int:
+        """Returns the world."""
+    def section(self, name: str) -> int:
+        """Returns the section with a name; a new one where there is none."""
+    def add(self, parent: int, element: str) -> int:
+        """Adds an element behind those in another."""
+    def insert(self, parent: int, element: str, index: int) -> int:
+        """Adds an element before another."""
+    def remove(self, number: int, alone: bool) -> None:
+        """Removes an element, with what refers to it unless it goes alone."""
+    def contains(self, number: int) -> bool:
+        """Returns whether an element is in the document."""
+    def set(self, number: int, name: str, value: str) -> None:
+        """Sets an attribute."""
+    def unset(self, number: int, name: str) -> None:
+        """Takes an attribute away."""
+    def get(self, number: int, name: str) -> str | None:
+        """Returns the text of an attribute that is given."""
+    def value(self, number: int, name: str) -> str:
+        """Returns the text of an attribute with default classes applied."""
+    def attributes(self, number: int) -> list[tuple[str, str]]:
+        """Returns the attributes that are given."""
+    def parent(self, number: int) -> int | None:
+        """Returns the element that an element is in."""
+    def children(self, number: int) -> list[int]:
+        """Returns the elements in an element."""
+    def element(self, number: int) -> str:
+        """Returns the name of an element in MJCF."""
+    def kind(self, number: int) -> str | None:
+        """Returns the kind of an element."""
+    def all(self, kind: str) -> list[int]:
+        """Returns all elements of a kind."""
+    def find(self, kind: str, name: str) -> int | None:
+        """Returns the element of a kind with a name."""
+    def class_of(self, number: int) -> str:
+        """Returns the name of the default class of an element."""
+    def attach(self, parent: int, other: MjcfDocument, body: int, prefix: str, suffix: str) -> int:
+        """Copies a body, a frame or the world of another document."""
+    def move_to(self, number: int, parent: int) -> None:
+        """Moves an element into another."""
+    def generalize(self, number: int) -> None:
+        """Makes an actuator of another kind a general one that acts the same."""
+    def write(self) -> str:
+        """Returns the document as MJCF."""
+
+@final
 class PhysicsModel:
     """A model of any document, beneath :class:`babybench.mujoco.MjModel`."""
 
@@ -438,6 +499,14 @@ class PhysicsData:
         """Resets, to a keyframe if given."""
     def step(self, count: int) -> None:
         """Advances by some time steps."""
+    def ray(
+        self,
+        origin: tuple[float, float, float],
+        direction: tuple[float, float, float],
+        without_body: int | None,
+        hidden: Sequence[int],
+    ) -> tuple[int, float] | None:
+        """Returns the first geom that a ray meets, and the distance; ``hidden`` geoms and those of one body are left out."""
     def forward(self, groups: int) -> None:
         """Computes everything without advancing, and shows some groups of arrays."""
     def rne_post_constraint(self) -> None:
@@ -462,8 +531,8 @@ class PhysicsData:
 class PhysicsRenderer:
     """Draws states of a model."""
 
-    def __new__(cls, model: PhysicsModel) -> PhysicsRenderer:
-        """Decodes the textures of a model."""
+    def __new__(cls, model: PhysicsModel, shown: tuple[tuple[bool, ...], ...] | None = None) -> PhysicsRenderer:
+        """Decodes the textures of a model. ``shown``: which geoms, sites, groups of tendons and groups of skins are drawn."""
     def draw(
         self,
         data: PhysicsData,

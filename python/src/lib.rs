@@ -13,6 +13,7 @@ mod errors;
 mod given_files;
 mod guarded;
 mod info;
+mod mjcf_document;
 mod model;
 mod model_change;
 mod noise;
@@ -51,6 +52,8 @@ mod _native {
     use super::config::{config_examples, config_from_mapping, config_from_yaml, config_keys};
     #[pymodule_export]
     use super::env::Env;
+    #[pymodule_export]
+    use super::mjcf_document::MjcfDocument;
     #[pymodule_export]
     use super::model_change::{Watch, model_columns, paint, set_equalities};
     #[pymodule_export]

@@ -3,7 +3,7 @@
 use std::sync::{Arc, Mutex, MutexGuard, TryLockError};
 
 use babybench::model::Model;
-use babybench::physics::{Engine, EngineError, SoftEngine, State, rne_post_constraint};
+use babybench::physics::{Engine, EngineError, SoftEngine, State, ray, rne_post_constraint};
 use babybench::render::{FreeCamera, ImageBuffers, Poses, RenderRequest, Renderer, View};
 use numpy::{PyArray1, PyArrayMethods};
 use pyo3::exceptions::{PyIndexError, PyRuntimeError, PyValueError};
@@ -194,6 +194,42 @@ impl PhysicsData {
         Ok(())
     }
 
+    /// Returns the first geom that a ray meets where the arrays show geoms, and the distance; `hidden` geoms are left out, and those of
+    /// one body.
+    fn ray(
+        &self,
+        py: Python<'_>,
+        origin: [f64; 3],
+        direction: [f64; 3],
+        without_body: Option<usize>,
+        hidden: Vec<usize>,
+    ) -> PyResult<Option<(usize, f64)>> {
+        let mut guard = self.guard()?;
+        let memory = self.memory.bind(py).try_readonly()?;
+        let shown = memory.as_slice()?;
+        let inner = &mut *guard;
+        let places = part(&inner.state, shown, "geom_xpos").as_chunks::<3>().0.to_vec();
+        let turns = part(&inner.state, shown, "geom_xmat").as_chunks::<9>().0.to_vec();
+        inner.state.geom_xpos.copy_from_slice(&places);
+        inner.state.geom_xmat.copy_from_slice(&turns);
+        let seen = if hidden.is_empty() {
+            inner.model.clone()
+        } else {
+            Arc::new(inner.model.edited(|arrays| {
+                for geom in hidden {
+                    if let (Some(material), Some(rgba)) =
+                        (arrays.geom_matid.get_mut(geom), arrays.geom_rgba.get_mut(geom))
+                    {
+                        *material = None;
+                        rgba[3] = 0.0;
+                    }
+                }
+            }))
+        };
+        let hit = ray(&seen, &inner.state, origin, direction, without_body).map_err(IntoException::into_exception)?;
+        Ok(hit.map(|hit| (hit.geom, hit.distance)))
+    }
+
     /// Computes everything without advancing, and shows some groups of arrays. Without constraints among them, contacts and their
     /// forces stay those of before; without accelerations, the solver's start does.
     fn forward(&self, py: Python<'_>, groups: u32) -> PyResult<()> {
@@ -315,6 +351,8 @@ pub struct PhysicsRenderer {
     model: Py<PhysicsModel>,
     /// The textures of the materials when the renderer was made.
     textures: Vec<Option<usize>>,
+    /// Which geoms, sites, groups of tendons and groups of skins are drawn, where these are not MuJoCo's default ones.
+    shown: Option<[Vec<bool>; 4]>,
 }
 
 /// A renderer, and the number of the look that it draws.
@@ -325,14 +363,17 @@ struct Drawing {
 
 #[pymethods]
 impl PhysicsRenderer {
+    /// Draws all that MuJoCo shows by default, or the geoms, sites, groups of tendons and groups of skins for which `shown` is true.
     #[new]
-    fn new(py: Python<'_>, model: Py<PhysicsModel>) -> PyResult<Self> {
-        let (scenery, look) = model.get().scenery(py, None)?;
+    #[pyo3(signature = (model, shown=None))]
+    fn new(py: Python<'_>, model: Py<PhysicsModel>, shown: Option<[Vec<bool>; 4]>) -> PyResult<Self> {
+        let (scenery, look) = model.get().scenery(py, None, shown.as_ref())?;
         let renderer = Renderer::cpu(scenery);
         Ok(Self {
             renderer: Mutex::new(Drawing { renderer, look }),
             textures: model.get().textures(),
             model,
+            shown,
         })
     }
 
@@ -392,7 +433,10 @@ impl PhysicsRenderer {
             PyRuntimeError::new_err("another thread is using the renderer: give each thread one of its own")
         })?;
         if guard_of_renderer.look != look {
-            let (scenery, look) = self.model.get().scenery(py, Some(&self.textures))?;
+            let (scenery, look) = self
+                .model
+                .get()
+                .scenery(py, Some(&self.textures), self.shown.as_ref())?;
             let renderer = Renderer::cpu(scenery);
             *guard_of_renderer = Drawing { renderer, look };
         }

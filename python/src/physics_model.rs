@@ -7,7 +7,7 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use babybench::Model;
 use babybench::assets::{AssetSource, FileSystem};
 use babybench::mjcf_loader::{LoadError, load, load_str};
-use babybench::model::{Arrays, Keyframe, SensorType, Wrap};
+use babybench::model::{Arrays, Keyframe, SensorType, Texture, TextureType, Wrap};
 use babybench::physics::{Params, SoftModel, SoftOptions, compile};
 use babybench::render::{RenderError, Scenery};
 use numpy::{PyArray1, PyArrayMethods};
@@ -161,21 +161,29 @@ impl PhysicsModel {
     }
 
     /// Returns what is drawn of the model, and the number of its look. Textures that materials of the model have now are replaced by
-    /// `textures`, if there are any: MuJoCo reads them when a renderer is made.
-    pub fn scenery(&self, py: Python<'_>, textures: Option<&[Option<usize>]>) -> PyResult<(Arc<Scenery>, u64)> {
+    /// `textures`, if there are any: MuJoCo reads them when a renderer is made. `shown` says what is drawn in place of MuJoCo's default groups.
+    pub fn scenery(
+        &self,
+        py: Python<'_>,
+        textures: Option<&[Option<usize>]>,
+        shown: Option<&[Vec<bool>; 4]>,
+    ) -> PyResult<(Arc<Scenery>, u64)> {
         self.now(py)?;
         let (known, model, looks) = {
             let current = self.current();
             (current.scenery.clone(), current.model.clone(), current.looks)
         };
         let same = textures.is_none_or(|given| model.materials.iter().map(|m| &m.texture).eq(given));
-        if let Some(scenery) = known.filter(|_| same) {
+        if let Some(scenery) = known.filter(|_| same && shown.is_none()) {
             return Ok((scenery, looks));
         }
-        if let Some(given) = textures.filter(|_| !same) {
+        if !same || shown.is_some() {
             let older = model.edited(|arrays| {
-                for (material, texture) in arrays.materials.iter_mut().zip(given) {
+                for (material, texture) in arrays.materials.iter_mut().zip(textures.unwrap_or_default()) {
                     material.texture = *texture;
+                }
+                if let Some(shown) = shown {
+                    show(arrays, shown);
                 }
             });
             return Ok((Arc::new(detached(py, || Scenery::new(&older, &*self.assets))?), looks));
@@ -194,6 +202,23 @@ impl PhysicsModel {
     /// Returns the texture of each material.
     pub fn textures(&self) -> Vec<Option<usize>> {
         self.current().model.materials.iter().map(|m| m.texture).collect()
+    }
+}
+
+/// Moves geoms, sites, and groups of tendons and of skins that are shown into a group that is drawn, and the others out of it.
+fn show(arrays: &mut Arrays, shown: &[Vec<bool>; 4]) {
+    const GROUPS: [usize; 2] = [5, 0];
+    for (groups, shown) in [&mut arrays.geom_group, &mut arrays.site_group].into_iter().zip(shown) {
+        for (group, shown) in groups.iter_mut().zip(shown) {
+            *group = GROUPS[usize::from(*shown)];
+        }
+    }
+    let by_group = |groups: &[bool], group: usize| GROUPS[usize::from(groups.get(group).copied().unwrap_or_default())];
+    for group in &mut arrays.tendon_group {
+        *group = by_group(&shown[2], *group);
+    }
+    for skin in &mut arrays.skins {
+        skin.group = by_group(&shown[3], skin.group);
     }
 }
 
@@ -328,8 +353,24 @@ impl PhysicsModel {
         all.set_item("sensor_dim", PyArray1::from_iter(py, dims))?;
         all.set_item("numeric_data", m.numeric_data.clone())?;
         all.set_item("text_data", &m.text_data)?;
+        let patterns: Option<Vec<usize>> = m.textures.iter().map(pattern_numbers).collect();
+        if let Some(numbers) = patterns {
+            all.set_item("ntexdata", numbers.iter().sum::<usize>())?;
+        }
         Ok(all)
     }
+}
+
+/// Returns how many numbers a pattern has, the six sides of a cube one below another; `None` for an image, which says so itself.
+fn pattern_numbers(texture: &Texture) -> Option<usize> {
+    let sides = if texture.kind == TextureType::Flat2d { 1 } else { 6 };
+    let image = texture.file.is_some() || texture.cube_files.iter().any(Option::is_some);
+    let height = if sides == 6 {
+        sides * texture.width
+    } else {
+        texture.height
+    };
+    (!image).then_some(texture.width * height * texture.channels)
 }
 
 /// Returns MuJoCo's type, object and parameter of what a tendon runs along.

@@ -405,7 +405,7 @@ def test_pictures_show_the_model() -> None:
     assert np.abs(renderer.render() - depth).max() > 0.1
     with pytest.raises(ValueError, match='The camera "no" does not exist'):
         renderer.update_scene(data, "no")
-    with pytest.raises(NotImplementedError, match="scene_option"):
+    with pytest.raises(TypeError, match="it must be an MjvOption"):
         renderer.update_scene(data, scene_option=object())
     renderer.close()
     with pytest.raises(RuntimeError, match="after close"):
@@ -548,3 +548,67 @@ def test_enumerations_of_documents_and_windows_are_there() -> None:
     assert int(mujoco.mjtLimited.mjLIMITED_AUTO) == 2
     assert int(mujoco.mjtBuiltin.mjBUILTIN_FLAT) == 3
     assert int(mujoco.mjtTextureRole.mjTEXROLE_RGB) == 1
+
+
+def test_groups_of_geoms_are_shown_and_hidden() -> None:
+    model, data = pair(
+        """<mujoco><worldbody><light pos="0 0 3"/><camera name="eye" pos="0 -1 0" xyaxes="1 0 0 0 0 1"/>
+        <geom name="wall" type="box" size="1 .01 1" pos="0 1 0"/><geom name="target" size=".2" group="3"/></worldbody></mujoco>"""
+    )
+    mujoco.mj_forward(model, data)
+    option = mujoco.MjvOption()
+    assert option.geomgroup.tolist() == [1, 1, 1, 0, 0, 0]
+    seen = []
+    with mujoco.Renderer(model, 50, 50) as renderer:
+        renderer.enable_segmentation_rendering()
+        for shown in (0, 1):
+            option.geomgroup[3] = shown
+            renderer.update_scene(data, camera="eye", scene_option=option)
+            seen.append(int((renderer.render()[..., 0] == 1).sum()))
+        renderer.update_scene(data, camera="eye")
+        assert not (renderer.render()[..., 0] == 1).any()
+        option.flags[mujoco.mjtVisFlag.mjVIS_CONTACTPOINT] = 1
+        with pytest.raises(ValueError, match=r"flags\[mjVIS_CONTACTPOINT\] is 1"):
+            renderer.update_scene(data, camera="eye", scene_option=option)
+        mujoco.mjv_defaultOption(option)
+        renderer.update_scene(data, camera="eye", scene_option=option)
+        with pytest.raises(AttributeError, match="MjvOption has no nonsense"):
+            option.nonsense = 1
+    assert seen[0] == 0
+    assert seen[1] == pytest.approx(474, abs=12)  # 1896 of 100 x 100 pixels in MuJoCo 3.3.0
+
+
+def test_rays_meet_what_they_may() -> None:
+    model, data = pair(
+        """<mujoco><worldbody><geom type="box" size="1 1 .1" pos="0 0 -.1"/>
+        <body pos="0 0 1"><freejoint/><geom size=".1" group="4"/></body></worldbody></mujoco>"""
+    )
+    mujoco.mj_forward(model, data)
+    found = np.zeros(1, np.int32)
+    up, down = np.array([0.0, 0, 2]), np.array([0.0, 0, -1])
+    assert mujoco.mj_ray(model, data, up, down, None, 1, -1, found) == pytest.approx(0.9)
+    assert found[0] == 1
+    assert mujoco.mj_ray(model, data, up, down, None, 1, 1, found) == pytest.approx(2)
+    assert mujoco.mj_ray(model, data, up, down, [1, 1, 1, 1, 0, 1], 1, -1, found) == pytest.approx(2)
+    assert mujoco.mj_ray(model, data, up, down, None, 0, 1, found) == -1
+    assert found[0] == -1
+    distances, geoms = np.zeros(2), np.zeros(2, np.int32)
+    mujoco.mj_multiRay(model, data, up, np.array([0, 0, -1, 1, 0, 0.0]), None, 1, -1, geoms, distances, 2, 10.0)
+    assert (distances.tolist(), geoms.tolist()) == (pytest.approx([0.9, -1]), [1, -1])
+    data.qpos[2] = 0.5
+    mujoco.mj_kinematics(model, data)
+    assert mujoco.mj_ray(model, data, up, down, None, 1, -1, found) == pytest.approx(1.4)
+    with pytest.raises(TypeError, match="geomgroup has 2 numbers"):
+        mujoco.mj_ray(model, data, up, down, [1, 1], 1, -1, found)
+
+
+def test_vectors_and_matrices_are_computed() -> None:
+    res, matrix = np.zeros(3), np.arange(9.0).reshape(3, 3)
+    mujoco.mju_mulMatVec(res, matrix, [1, 0, 2])
+    assert res.tolist() == [4, 13, 22]
+    mujoco.mju_addToScl3(res, [1, 1, 1], -2)
+    assert res.tolist() == [2, 11, 20]
+    assert mujoco.mju_dist3([0, 0, 0], [3, 4, 0]) == mujoco.mju_norm3([3, 4, 0]) == 5
+    assert (mujoco.mju_clip(3, 0, 1), mujoco.mju_sign(-2), mujoco.mju_dot([1, 2], [3, 4])) == (1, -1, 11)
+    with pytest.raises(TypeError, match="mju_add: res has 3 numbers, and the result 2"):
+        mujoco.mju_add(res, [1, 2], [3, 4])

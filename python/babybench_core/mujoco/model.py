@@ -246,6 +246,8 @@ class MjModel(Named):
         if name in _ADDRESSES:
             return np.where(self._compiled(_ADDRESSES[name]) == 0, np.int32(-1), self._compiled(name))
         if name in self._extras:
+            if name == "ntexdata":
+                return int(self._extras[name])
             value = np.asarray(self._extras[name])
             if value.dtype == np.bool_:
                 return value.astype(np.uint8)

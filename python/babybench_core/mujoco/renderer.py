@@ -12,6 +12,7 @@ from .data import MjData
 from .enums import mjtCamera, mjtObj
 from .jacobians import check
 from .model import MjModel
+from .scene_option import MjvOption, shown
 
 __all__ = ["MjvCamera", "Renderer", "mjv_defaultCamera", "mjv_defaultFreeCamera"]
 
@@ -90,6 +91,7 @@ class Renderer:
             )
         self._model, self._width, self._height = model, int(width), int(height)
         self._native: _native.PhysicsRenderer | None = _native.PhysicsRenderer(model._own)
+        self._natives: dict[Any, _native.PhysicsRenderer] = {None: self._native}
         self._data: MjData | None = None
         self._camera = MjvCamera()
         self._what = "rgb"
@@ -109,23 +111,28 @@ class Renderer:
         """Width of pictures, pixels."""
         return self._width
 
-    def update_scene(self, data: MjData, camera: int | str | MjvCamera = -1, scene_option: Any = None) -> None:
+    def update_scene(
+        self, data: MjData, camera: int | str | MjvCamera = -1, scene_option: MjvOption | None = None
+    ) -> None:
         """Takes the state and the camera of the next picture.
 
         Args:
             data: The state; it is drawn as it is when :meth:`render` is called.
             camera: A camera of the model, by number or name, a :class:`MjvCamera`, or -1 for a free one that sees all.
-            scene_option: What MuJoCo shows or leaves out; only none.
+            scene_option: Which groups of geoms, sites, tendons and skins are shown; 0 to 2 by default.
 
         Raises:
-            ValueError: The model has no such camera.
-            NotImplementedError: ``scene_option`` is given.
+            ValueError: The model has no such camera, or ``scene_option`` asks for decorations that are not drawn.
         """
         check(self._model, data)
-        if scene_option is not None:
-            raise NotImplementedError(
-                "scene_option is not served: pictures show geoms of the groups 0 to 2 and sites, as MuJoCo's default"
-            )
+        if self._native is None:
+            raise RuntimeError("update_scene cannot be called after close.")
+        if scene_option is not None and not isinstance(scene_option, MjvOption):
+            raise TypeError(f"scene_option is {type(scene_option).__name__}: it must be an MjvOption")
+        visible = None if scene_option is None else shown(self._model, scene_option)
+        if visible not in self._natives:
+            self._natives[visible] = _native.PhysicsRenderer(self._model._own, visible)
+        self._native = self._natives[visible]
         if isinstance(camera, MjvCamera):
             self._camera = camera
         else:
@@ -193,6 +200,7 @@ class Renderer:
     def close(self) -> None:
         """Gives the memory back; no picture can be drawn any more."""
         self._native = self._data = None
+        self._natives = {}
 
     def __enter__(self) -> Renderer:
         return self
