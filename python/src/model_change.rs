@@ -138,16 +138,11 @@ pub fn paint(env: &Bound<'_, Env>, looks: &Bound<'_, PyDict>) -> PyResult<()> {
         let flat = values.call_method0("ravel")?.call_method1("astype", ("float64",))?;
         given.insert(name.extract::<String>()?, flat.extract::<Vec<f64>>()?);
     }
-    let mut fault = Ok(());
-    let painted = env.model_mut().paint(|arrays| {
-        let mut looked = arrays.clone();
-        fault = write_columns(&given, &mut looked);
-        if fault.is_ok() {
-            *arrays = looked;
-        }
-    });
-    fault?;
-    painted.map_err(IntoException::into_exception)?;
+    let mut looked = Arrays::clone(env.model());
+    write_columns(&given, &mut looked)?;
+    env.model_mut()
+        .paint(|arrays| *arrays = looked)
+        .map_err(IntoException::into_exception)?;
     // the earlier ones would continue to draw the old look
     inner.painters = Painters::default();
     Ok(())

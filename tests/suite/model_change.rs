@@ -23,7 +23,7 @@ fn course(env: &mut Env, steps: usize) -> Vec<u64> {
 type Edit = fn(&mut Arrays);
 
 /// A change of each kind of number.
-const EDITS: [(&str, Edit); 16] = [
+const EDITS: [(&str, Edit); 20] = [
     ("opt.gravity", |m| m.opt.gravity[2] = -1.62),
     ("opt.timestep", |m| m.opt.timestep = 0.004),
     ("opt.impratio", |m| m.opt.impratio = 2.0),
@@ -50,7 +50,47 @@ const EDITS: [(&str, Edit); 16] = [
     }),
     ("geom_solref", |m| m.geom_solref.iter_mut().for_each(|s| s[0] = 0.03)),
     ("geom_solimp", |m| m.geom_solimp.iter_mut().for_each(|s| s[0] = 0.8)),
+    ("body_pos", |m| m.body_pos.iter_mut().skip(2).for_each(|p| p[2] *= 1.02)),
+    ("body_quat", |m| {
+        m.body_quat.iter_mut().skip(2).for_each(|q| q[1] += 0.01)
+    }),
+    ("geom_pos", |m| m.geom_pos.iter_mut().for_each(|p| p[2] += 0.005)),
+    ("jnt_range", |m| {
+        m.jnt_range.iter_mut().for_each(|r| *r = [0.2 * r[0], 0.2 * r[1]])
+    }),
 ];
+
+#[test]
+fn a_look_changes_pictures_alone() {
+    let config = free(Behavior::SelfTouch, Scene::Crib);
+    let (mut plain, mut painted) = (started(&config), started(&config));
+    painted
+        .model_mut()
+        .paint(|model| {
+            model.geom_rgba.iter_mut().for_each(|rgba| *rgba = [1.0, 0.0, 0.0, 1.0]);
+            model.cam_fovy[0] = 30.0;
+        })
+        .expect("a look");
+    assert_eq!(painted.snapshot(), plain.snapshot());
+    assert_eq!(course(&mut painted, 5), course(&mut plain, 5));
+    assert!(painted.blueprint().model_changes().is_empty());
+    let drawn = painted.blueprint().scenery().expect("textures");
+    assert_eq!(drawn.cameras[0].fovy, 30.0);
+    assert_ne!(plain.blueprint().scenery().expect("textures").cameras[0].fovy, 30.0);
+    assert!(painted.model_mut().paint(|model| model.opt.gravity[2] = 0.0).is_err());
+    assert!(painted.model_mut().paint(|model| model.body_pos[1][0] += 1.0).is_err());
+}
+
+#[test]
+fn equalities_are_switched_for_later_episodes_too() {
+    let mut env = started(&free(Behavior::SelfTouch, Scene::Crib));
+    let held = vec![true; env.model().neq()];
+    env.model_mut().set_equalities(&held).expect("one flag for each");
+    assert_eq!(env.state().params.eq_active, held);
+    env.reset(Some(6)).expect("no divergence");
+    assert_eq!(env.state().params.eq_active, held);
+    assert!(env.model_mut().set_equalities(&held[1..]).is_err());
+}
 
 #[test]
 fn what_is_changed_acts_in_the_next_steps_and_in_later_episodes_until_it_is_changed_back() {
