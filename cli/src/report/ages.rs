@@ -3,6 +3,7 @@
 use maud::html;
 
 use super::doll::{Doll, DollSide};
+use super::months;
 use super::svg::embed;
 use babybench::assets::AssetSource;
 use babybench::formats::png::{ColorType, png};
@@ -55,7 +56,7 @@ pub fn draw_ages(infants: &[(f64, &Model)], assets: &dyn AssetSource) -> Option<
                 @let left = LEFT + k * wide;
                 @let middle = left + wide / 2;
                 image x=(left) y="0" width=(wide) height=(ground) href=(doll) {}
-                text.age x=(middle) y=(ground + 36) text-anchor="middle" { (age) @if *age == 1.0 { " month" } @else { " months" } }
+                text.age x=(middle) y=(ground + 36) text-anchor="middle" { (months(*age)) }
                 text x=(middle) y=(ground + 66) text-anchor="middle" {
                     (format!("{:.1} cm, {:.1} kg", 100.0 * figures.stature, figures.mass))
                 }

@@ -2,6 +2,7 @@
 
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
+use super::months;
 use super::svg::download;
 use babybench::eval::{Benchmark, BenchmarkRow, ConfidenceInterval};
 use babybench::text::quoted;
@@ -80,7 +81,7 @@ fn section(first: &BenchmarkRow, group: &[BenchmarkRow], columns: &[(String, Str
 fn label(row: &BenchmarkRow) -> String {
     let policy = quoted(&row.policy);
     match row.age {
-        Some(age) => format!("{policy}, {age} months"),
+        Some(age) => format!("{policy}, {}", months(age)),
         None => policy,
     }
 }

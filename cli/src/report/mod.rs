@@ -22,6 +22,11 @@ pub use benchmark::benchmark_page;
 use babybench::files::replace_file;
 use run::RunContents;
 
+/// Returns an age in words: 1 month, 6 months.
+fn months(age: f64) -> String {
+    format!("{age} {}", if age == 1.0 { "month" } else { "months" })
+}
+
 /// An error in building a report.
 #[derive(Debug, Error)]
 #[non_exhaustive]

@@ -9,6 +9,7 @@ use self::evaluation::evaluation_section;
 use self::touch::touch_section;
 use super::curve::curve;
 use super::gaze::Gaze;
+use super::months;
 use super::run::RunContents;
 use super::svg::download;
 use babybench::config::{Behavior, Compat, Config, Scene};
@@ -78,7 +79,7 @@ fn title(run: &RunContents) -> String {
         Scene::File(path) => format!("in {}", quoted(path)),
     };
     match config.age {
-        Some(age) => format!("{behavior} {place}, at {age} months"),
+        Some(age) => format!("{behavior} {place}, at {}", months(age)),
         None => format!("{behavior} {place}"),
     }
 }

@@ -93,7 +93,7 @@ def _ages(path: Path) -> dict[str, data.Record]:
         if Path(run["name"]).name != run["name"] or not (folder / "manifest.json").is_file():
             continue
         policy = policy or run["policy"]
-        label = "18 months" if run["age"] is None else f"{run['age']:g} months"
+        label = "18 months" if run["age"] is None else curves.months(run["age"])
         record = data.open(folder)
         if run["policy"] == policy and label not in found and record.has_skin and len(record):
             found[label] = record

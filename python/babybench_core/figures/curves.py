@@ -145,8 +145,13 @@ def benchmark_bars(path: Union[str, Path], metrics: Optional[Sequence[str]] = No
         return made
 
 
+def months(age: float) -> str:
+    """Returns an age in words: 1 month, 6 months."""
+    return f"{age:g} {'month' if age == 1 else 'months'}"
+
+
 def _label(row: Mapping[str, Any], several: bool) -> str:
-    age = "" if row["age"] is None else f", {row['age']:g} months"
+    age = "" if row["age"] is None else f", {months(row['age'])}"
     config = f"{row['config']}, " if several else ""
     return f"{config}{row['policy']}{age}"
 
