@@ -207,13 +207,17 @@ impl PhysicsModel {
 
 /// Moves geoms, sites, and groups of tendons and of skins that are shown into a group that is drawn, and the others out of it.
 fn show(arrays: &mut Arrays, shown: &[Vec<bool>; 4]) {
-    const GROUPS: [usize; 2] = [5, 0];
+    const GROUPS: [i32; 2] = [5, 0];
     for (groups, shown) in [&mut arrays.geom_group, &mut arrays.site_group].into_iter().zip(shown) {
         for (group, shown) in groups.iter_mut().zip(shown) {
             *group = GROUPS[usize::from(*shown)];
         }
     }
-    let by_group = |groups: &[bool], group: usize| GROUPS[usize::from(groups.get(group).copied().unwrap_or_default())];
+    // groups beyond the first and the last count as these
+    let by_group = |groups: &[bool], group: i32| {
+        let place = usize::try_from(group).unwrap_or_default().min(5);
+        GROUPS[usize::from(groups.get(place).copied().unwrap_or_default())]
+    };
     for group in &mut arrays.tendon_group {
         *group = by_group(&shown[2], *group);
     }
