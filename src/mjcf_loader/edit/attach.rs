@@ -2,7 +2,8 @@
 
 use std::collections::BTreeSet;
 
-use super::document::{Document, ElementId, Node};
+use super::document::{Document, Node};
+use super::element_id::ElementId;
 use super::error::EditError;
 use super::kinds::{Kind, references, referred};
 use crate::compile::stem;

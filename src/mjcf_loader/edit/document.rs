@@ -2,30 +2,13 @@
 
 use std::fmt;
 
+use super::element_id::ElementId;
 use super::error::{EditError, nearest};
 use crate::assets::directory;
 use crate::attribute::Attr;
 use crate::elements::MUJOCO;
 use crate::limits::Limits;
 use crate::schema::{DEFAULT, Rule};
-
-/// An element of a [`Document`]. It stays the same element whatever is added or removed around it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub struct ElementId(pub(super) usize);
-
-impl ElementId {
-    /// Returns a number that tells the elements of a document apart.
-    #[must_use]
-    pub fn index(self) -> usize {
-        self.0
-    }
-}
-
-impl fmt::Display for ElementId {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "element {}", self.0)
-    }
-}
 
 /// An element with its attributes as text.
 #[derive(Clone)]

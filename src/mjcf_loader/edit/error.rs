@@ -1,6 +1,8 @@
 //! What can go wrong while a document is edited.
 
-use super::{ElementId, Settings};
+use std::fmt;
+
+use super::element_id::ElementId;
 use crate::error::{ErrorKind, LoadError};
 use crate::text::quoted;
 
@@ -63,7 +65,7 @@ pub enum EditError {
     Unattachable(&'static str),
     /// Documents with different settings of `compiler`, by which the numbers of one would change their meaning in the other.
     #[error("cannot attach: compiler has {0}: set it alike in both documents")]
-    Settings(Box<Settings>),
+    Settings(Box<SettingsConflict>),
     /// A default class that does not exist.
     #[error("unknown default class \"{}\"", quoted(.0))]
     UnknownClass(String),
@@ -80,6 +82,27 @@ pub enum EditError {
     /// A document that cannot be read or compiled.
     #[error(transparent)]
     Load(#[from] LoadError),
+}
+
+/// A setting of `compiler` that differs between two documents.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct SettingsConflict {
+    /// The attribute.
+    pub attribute: &'static str,
+    /// Its value in the document that the other is attached to.
+    pub own: String,
+    /// Its value in the document that is attached.
+    pub other: String,
+}
+
+impl fmt::Display for SettingsConflict {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { attribute, own, other } = self;
+        write!(
+            f,
+            "{attribute}=\"{own}\" here, and {attribute}=\"{other}\" where the attached body is from"
+        )
+    }
 }
 
 fn hint(nearest: &Option<&'static str>) -> String {

@@ -1,6 +1,7 @@
 //! Actuators of all kinds as `general` ones.
 
-use super::document::{Document, ElementId, Node};
+use super::document::{Document, Node};
+use super::element_id::ElementId;
 use super::error::EditError;
 use super::kinds::Kind;
 use super::values::MAIN;

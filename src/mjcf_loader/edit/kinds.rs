@@ -1,6 +1,7 @@
 //! Kinds of elements, and which attributes name elements of which kind.
 
-use super::document::{Document, ElementId, Node};
+use super::document::{Document, Node};
+use super::element_id::ElementId;
 use crate::schema::DEFAULT;
 
 /// Defines the kinds, with their names in MJCF.

@@ -32,6 +32,7 @@
 mod attach;
 mod classes;
 mod document;
+mod element_id;
 mod error;
 mod general;
 mod kinds;
@@ -44,7 +45,7 @@ mod text;
 mod units;
 mod values;
 
-pub use document::{Document, ElementId};
-pub use error::EditError;
+pub use document::Document;
+pub use element_id::ElementId;
+pub use error::{EditError, SettingsConflict};
 pub use kinds::Kind;
-pub use settings::Settings;

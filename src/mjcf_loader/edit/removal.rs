@@ -1,6 +1,7 @@
 //! Elements taken out of a document, and what refers to them.
 
-use super::document::{Document, ElementId, Node, ROOT};
+use super::document::{Document, Node, ROOT};
+use super::element_id::ElementId;
 use super::error::EditError;
 use super::kinds::{Kind, loses_meaning, references};
 

@@ -1,32 +1,9 @@
 //! Settings of `compiler`, which decide what the numbers of a document mean.
 
-use std::fmt;
-
 use super::document::Document;
-use super::error::EditError;
+use super::error::{EditError, SettingsConflict};
 use crate::document::Compiler;
 use crate::table::Table;
-
-/// A setting of `compiler` that differs between two documents.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Settings {
-    /// The attribute.
-    pub attribute: &'static str,
-    /// Its value in the document that the other is attached to.
-    pub own: String,
-    /// Its value in the document that is attached.
-    pub other: String,
-}
-
-impl fmt::Display for Settings {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { attribute, own, other } = self;
-        write!(
-            f,
-            "{attribute}=\"{own}\" here, and {attribute}=\"{other}\" where the attached body is from"
-        )
-    }
-}
 
 /// Settings by which elements are compiled. The others count for the whole model.
 const OF_ELEMENTS: [&str; 8] = [
@@ -66,7 +43,7 @@ impl Document {
                 other.compiler_or_default(attribute),
             );
             if own != theirs {
-                let settings = Settings {
+                let settings = SettingsConflict {
                     attribute,
                     own,
                     other: theirs,

@@ -94,8 +94,8 @@ fn what_cannot_be_says_so_and_changes_nothing() {
         "<body> cannot hold <goem>; did you mean \"geom\"?",
     );
     told(
-        room.set(geom, "siez", "1"),
-        "<geom> has no attribute \"siez\"; did you mean \"size\"?",
+        room.set(geom, "sizes", "1"),
+        "<geom> has no attribute \"sizes\"; did you mean \"size\"?",
     );
     told(room.set(geom, "nonsense", "1"), "<geom> has no attribute \"nonsense\"");
     told(room.set(geom, "size", "-1"), "<geom>: size: -1 must be at least 0");

@@ -2,7 +2,8 @@
 
 use std::f64::consts::PI;
 
-use super::document::{Document, ElementId};
+use super::document::Document;
+use super::element_id::ElementId;
 use super::error::EditError;
 use super::kinds::Kind;
 

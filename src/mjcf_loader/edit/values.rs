@@ -1,6 +1,7 @@
 //! Values with default classes applied.
 
-use super::document::{Document, ElementId, attr_of};
+use super::document::{Document, attr_of};
+use super::element_id::ElementId;
 use super::error::EditError;
 use super::kinds::Kind;
 use crate::schema::DEFAULT;

@@ -45,7 +45,12 @@ pub struct GpuScene {
 
 impl GpuScene {
     pub fn new(gpu: &Gpu, layouts: &Layouts, scenery: &Scenery) -> Self {
-        let (vertices, indices, ranges, grids) = geometry(scenery);
+        let Geometry {
+            vertices,
+            indices,
+            ranges,
+            grids,
+        } = geometry(scenery);
         let worn: usize = scenery.skins.iter().map(SkinLook::count).sum();
         let flipped = scenery.meshes.len() + worn;
         let buffer = |label, contents: &[u8], usage| {
@@ -119,10 +124,18 @@ pub fn add_vertices(mesh: &Mesh, vertices: &mut Vec<f32>) {
     }
 }
 
-/// Lists vertices, indices, and the range of indices of each mesh: those of [`Scenery::meshes`], those of skins, without vertices, the
-/// plane seen from behind, then, of each plane that is lit on a lattice, its grid from both sides. Last comes the index of the first of
-/// these for each drawable.
-fn geometry(scenery: &Scenery) -> (Vec<f32>, Vec<u32>, Vec<Range<u32>>, Vec<Option<usize>>) {
+/// The vertices and triangles of a scene.
+struct Geometry {
+    vertices: Vec<f32>,
+    indices: Vec<u32>,
+    /// The range of indices of each mesh: those of [`Scenery::meshes`], those of skins, which have no vertices, the plane seen from behind,
+    /// and for each plane that is lit on a lattice its grid from both sides.
+    ranges: Vec<Range<u32>>,
+    /// The first range of the grid of each drawable that has one.
+    grids: Vec<Option<usize>>,
+}
+
+fn geometry(scenery: &Scenery) -> Geometry {
     let (mut vertices, mut indices, mut ranges) = (Vec::new(), Vec::new(), Vec::new());
     let mut add = |mesh: &Mesh, first: u32, flipped: bool| {
         let start = indices.len() as u32;
@@ -157,7 +170,12 @@ fn geometry(scenery: &Scenery) -> (Vec<f32>, Vec<u32>, Vec<Range<u32>>, Vec<Opti
         *grid = Some(next);
         next += 2;
     }
-    (vertices, indices, ranges, grids)
+    Geometry {
+        vertices,
+        indices,
+        ranges,
+        grids,
+    }
 }
 
 /// Fills the uniform block `Scene` of the shader.
