@@ -206,6 +206,8 @@ fn visit(arrays: &mut Arrays, mut work: impl FnMut(Column, Vec<&mut dyn Cell>)) 
     let vis = &mut arrays.vis;
     for (name, store, cell) in [
         ("vis_fovy", Store::Single, &mut vis.fovy as &mut dyn Cell),
+        ("vis_azimuth", Store::Single, &mut vis.azimuth),
+        ("vis_elevation", Store::Single, &mut vis.elevation),
         ("vis_znear", Store::Single, &mut vis.znear),
         ("vis_zfar", Store::Single, &mut vis.zfar),
         ("vis_ambient", Store::Single, &mut vis.headlight_ambient),

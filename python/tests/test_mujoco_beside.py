@@ -130,9 +130,14 @@ def test_compiled_arrays_are_mujoco_s(both: Both) -> None:
         same(f"opt.{name}", getattr(both.ours.opt, name), getattr(both.theirs.opt, name))
     for name in ("extent", "center", "meaninertia", "meanmass", "meansize"):
         assert getattr(both.ours.stat, name) == pytest.approx(getattr(both.theirs.stat, name), rel=1e-9)
-    for name in ("offwidth", "offheight", "fovy"):
+    for name in ("offwidth", "offheight", "fovy", "azimuth", "elevation"):
         assert getattr(both.ours.vis.global_, name) == pytest.approx(getattr(both.theirs.vis.global_, name))
     assert both.ours.vis.map.znear == pytest.approx(both.theirs.vis.map.znear)
+    one, other = ours.MjvCamera(), theirs.MjvCamera()
+    ours.mjv_defaultFreeCamera(both.ours, one)
+    theirs.mjv_defaultFreeCamera(both.theirs, other)
+    for name in ("lookat", "distance", "azimuth", "elevation"):
+        assert getattr(one, name) == pytest.approx(getattr(other, name)), name
 
 
 def test_steps_and_their_parts_leave_what_mujoco_leaves(both: Both) -> None:

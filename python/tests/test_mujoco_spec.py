@@ -192,7 +192,7 @@ def test_documents_are_files(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("act", "error", "text"),
     [
-        (lambda s: setattr(s.geoms[0], "siez", 1), AttributeError, "MjsGeom has no siez; did you mean size"),
+        (lambda s: setattr(s.geoms[0], "sizes", 1), AttributeError, "MjsGeom has no sizes; did you mean size"),
         (lambda s: s.geoms[0].plugin, AttributeError, "plugins are programs of MuJoCo's own"),
         (lambda s: setattr(s.geoms[0], "size", [1.0]), ValueError, "size has 1 numbers: it must have 3"),
         (lambda s: setattr(s.geoms[0], "type", 99), ValueError, "type is 99: it must be one of 0"),

@@ -199,7 +199,9 @@ table! {
         "fovy" fovy: f64 = 45.0, real(Positive), "Vertical field of view of the free camera, degrees.";
         "offwidth" offwidth: usize = 640, int(1, MAX_PIXELS), "Width of pictures drawn offscreen, pixels.";
         "offheight" offheight: usize = 480, int(1, MAX_PIXELS), "Height of pictures drawn offscreen, pixels.";
-        check "ipd" | "azimuth" | "elevation" | "linewidth" | "glow", real(Any), "View and drawing of MuJoCo's viewer. Ignored.";
+        "azimuth" azimuth: f64 = 90.0, real(Any), "Direction of view of the free camera about the vertical axis, degrees; 0 is along x.";
+        "elevation" elevation: f64 = -45.0, real(Any), "Angle of the free camera's view above the horizon, degrees.";
+        check "ipd" | "linewidth" | "glow", real(Any), "View and drawing of MuJoCo's viewer. Ignored.";
         check "realtime", real(Positive), "Speed of MuJoCo's viewer. Ignored.";
         check "ellipsoidinertia" | "bvactive" | "orthographic", FLAG, "What MuJoCo's viewer draws. Ignored.";
     }
@@ -325,6 +327,8 @@ impl Visual {
         } = self;
         model::Visual {
             fovy: single(global.fovy),
+            azimuth: single(global.azimuth),
+            elevation: single(global.elevation),
             znear: single(map.znear),
             zfar: single(map.zfar),
             fogstart: single(map.fogstart),

@@ -164,6 +164,10 @@ pub struct Light {
 pub struct Visual {
     /// Vertical field of view of the free camera, degrees.
     pub fovy: f64,
+    /// Direction in which the free camera looks at first, about the vertical axis, degrees; 0 is along x.
+    pub azimuth: f64,
+    /// Angle of that view above the horizon, degrees.
+    pub elevation: f64,
     /// Near plane, times the extent.
     pub znear: f64,
     /// Far plane, times the extent.

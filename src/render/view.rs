@@ -71,15 +71,15 @@ pub struct FreeCamera {
 }
 
 impl FreeCamera {
-    /// Returns the camera with which MuJoCo's viewer begins: it looks at the centre of the model from 1.5 times its extent, from behind and
-    /// above.
+    /// Returns the camera with which MuJoCo's viewer begins: it looks at the centre of the model from 1.5 times its extent, in the direction
+    /// that the model gives, by default along y and downwards.
     #[doc(alias = "mjv_defaultFreeCamera")]
     pub fn of(model: &Model) -> Self {
         Self {
             lookat: model.stat.center,
             distance: 1.5 * model.stat.extent,
-            azimuth: 90.0,
-            elevation: -45.0,
+            azimuth: model.vis.azimuth,
+            elevation: model.vis.elevation,
         }
     }
 

@@ -116,7 +116,7 @@ def visual(columns: dict[str, NDArray[Any]], width: int, height: int) -> Setting
     return Settings(
         "vis",
         {
-            "global_": Drawn("vis.global_", drawn("fovy"), sizes, tuple(sizes)),
+            "global_": Drawn("vis.global_", drawn("fovy", "azimuth", "elevation"), sizes, tuple(sizes)),
             "map": Drawn("vis.map", drawn("znear", "zfar"), {}, ()),
             "headlight": Drawn("vis.headlight", drawn("ambient", "diffuse", "specular", "active"), {}, ()),
         },

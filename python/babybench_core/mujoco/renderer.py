@@ -48,8 +48,10 @@ def mjv_defaultCamera(cam: MjvCamera) -> None:
 
 
 def mjv_defaultFreeCamera(m: MjModel, cam: MjvCamera) -> None:
-    """Makes a camera a free one that sees the whole model."""
+    """Makes a camera a free one that sees the whole model, from the direction of ``<visual><global azimuth elevation/>``."""
     mjv_defaultCamera(cam)
+    view = m.vis.global_
+    cam.azimuth, cam.elevation = float(view.azimuth), float(view.elevation)
     cam.lookat[:] = m.stat.center
     cam.distance = 1.5 * m.stat.extent
 
