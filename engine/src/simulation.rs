@@ -355,6 +355,21 @@ mod tests {
     }
 
     #[test]
+    fn the_free_camera_looks_where_the_document_says() -> Result<(), SimulationError> {
+        let view = |global: &str| {
+            let mut scene = Simulation::from_text(&format!(
+                "<mujoco><visual><global {global}/></visual><worldbody><light pos='0 0 3'/><geom type='box' size='.1 .2 .3'/></worldbody></mujoco>"
+            ))?;
+            scene.forward()?;
+            scene.draw(None, 32, 24)
+        };
+        assert_eq!(view("")?, view("azimuth='90' elevation='-45'")?);
+        assert_ne!(view("")?, view("azimuth='0'")?);
+        assert_ne!(view("")?, view("elevation='-10'")?);
+        Ok(())
+    }
+
+    #[test]
     fn pictures_show_the_pose_of_the_last_step() -> Result<(), SimulationError> {
         let mut arm = Simulation::from_text(ARM)?;
         arm.forward()?;

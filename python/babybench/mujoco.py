@@ -25,6 +25,7 @@ from babybench_core.mujoco import jacobians as _jacobians
 from babybench_core.mujoco import maths as _maths
 from babybench_core.mujoco import more_enums as _more_enums
 from babybench_core.mujoco import rays as _rays
+from babybench_core.mujoco import rollout
 from babybench_core.mujoco import spec as _spec
 from babybench_core.mujoco import vectors as _vectors
 from babybench_core.mujoco.constants import *  # noqa: F403
@@ -75,6 +76,7 @@ __all__ = [
     "mjv_defaultCamera",
     "mjv_defaultFreeCamera",
     "mjv_defaultOption",
+    "rollout",
     "stands_in",
     "uninstall",
 ]

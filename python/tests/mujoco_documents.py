@@ -7,7 +7,8 @@ ARM = """<mujoco model="arm"><worldbody>
   <keyframe><key name="up" time="2" qpos="-1.5" qvel=".5" ctrl=".25"/></keyframe></mujoco>"""
 """A hinge with a motor and a keyframe."""
 
-ALL = """<mujoco><size nuser_body="2"/><visual><global azimuth="120" elevation="-20"/></visual><default><geom friction=".8 .1 .1"/></default>
+ALL = """<mujoco><size nuser_body="2"/><visual><global azimuth="120" elevation="-20"/></visual>
+  <default><geom friction=".8 .1 .1"/></default>
   <worldbody><geom name="floor" type="plane" size="5 5 .1"/><light pos="0 0 3" dir="0 0 -1"/>
     <body name="a" pos="0 0 .3" user="1 2"><freejoint name="root"/><geom name="ga" size=".1"/>
       <site name="sa" pos=".05 0 0" size=".01"/>

@@ -380,3 +380,18 @@ def test_the_guide_s_known_faults_are_those_of_mujoco_3_3_0(monkeypatch: pytest.
             # babybench.mujoco has no rays and no vertices of meshes
             if not str(here[name]).startswith("AttributeError"):
                 assert known_faults.cell(here[name]) == known_faults.cell(reference[name]), name
+
+
+def test_rollouts_are_mujoco_s(both: Both) -> None:
+    its_rollout = importlib.import_module("mujoco.rollout")
+    rng = np.random.default_rng(2)
+    full = theirs.mjtState.mjSTATE_FULLPHYSICS
+    begin = np.zeros(theirs.mj_stateSize(both.theirs, full))
+    theirs.mj_getState(both.theirs, both.its, begin, full)
+    begin = np.stack([begin, begin])
+    begin[1, 1 + both.theirs.nq : 1 + both.theirs.nq + both.theirs.nv] = 0.1 * rng.normal(size=both.theirs.nv)
+    control = rng.uniform(-1, 1, (2, 10, both.theirs.nu))
+    mine = ours.rollout.rollout(both.ours, both.mine, begin, control)
+    its = its_rollout.rollout(both.theirs, both.its, begin, control)
+    for name, one, other in zip(("states", "sensors"), mine, its):
+        same(name, one, other, 1e-6)

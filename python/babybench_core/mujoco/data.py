@@ -135,11 +135,14 @@ class MjData(Named):
             raise AttributeError(f"data.{name} is computed, and cannot be set")
 
     def __copy__(self) -> MjData:
-        other = MjData(self.model)
-        other._own.copy_from(self._own)
-        other.userdata[:] = self.userdata
-        other.__dict__["_start"] = self._start
-        return other
+        return MjData(self.model)._take(self)
+
+    def _take(self, other: MjData) -> MjData:
+        """Becomes a copy of another state of the model."""
+        self._own.copy_from(other._own)
+        self.userdata[:] = other.userdata
+        self.__dict__["_start"] = other._start
+        return self
 
     def __deepcopy__(self, memo: Any) -> MjData:
         return self.__copy__()

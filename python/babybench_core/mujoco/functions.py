@@ -18,6 +18,7 @@ __all__ = [
     "mj_comPos",
     "mj_comVel",
     "mj_contactForce",
+    "mj_copyData",
     "mj_differentiatePos",
     "mj_forward",
     "mj_fullM",
@@ -36,6 +37,7 @@ __all__ = [
     "mj_resetData",
     "mj_resetDataKeyframe",
     "mj_rnePostConstraint",
+    "mj_setKeyframe",
     "mj_setState",
     "mj_solveM",
     "mj_stateSize",
@@ -233,6 +235,30 @@ def mj_resetDataKeyframe(m: MjModel, d: MjData, key: int) -> None:
         raise IndexError(f"keyframe {key} does not exist: the model has {m.nkey}, numbered from 0")
     d._own.reset(int(key))
     d.userdata[:] = 0
+
+
+def mj_setKeyframe(m: MjModel, d: MjData, k: int) -> None:
+    """Writes a state into a keyframe of its model.
+
+    Raises:
+        IndexError: The keyframe does not exist.
+        ValueError: Mocap bodies are elsewhere than in the keyframe, whose poses of them cannot be changed.
+    """
+    check(m, d)
+    if not 0 <= k < m.nkey:
+        raise IndexError(f"keyframe {k} does not exist: the model has {m.nkey}, numbered from 0")
+    if m.nmocap and not (np.array_equal(m.key_mpos[k], d.mocap_pos) and np.array_equal(m.key_mquat[k], d.mocap_quat)):
+        raise ValueError(f"keyframe {k}: mocap poses of keyframes come from the document: write them there")
+    m.key_time[k] = d.time
+    for name in ("qpos", "qvel", "act", "ctrl"):
+        getattr(m, f"key_{name}")[k] = getattr(d, name)
+
+
+def mj_copyData(dest: MjData, m: MjModel, src: MjData) -> MjData:
+    """Copies a state, with everything that was computed, into another of the same model, and returns that."""
+    check(m, src)
+    check(m, dest)
+    return dest._take(src)
 
 
 def mj_fullM(m: MjModel, dst: _Floats, M: ArrayLike) -> None:
