@@ -101,7 +101,7 @@ def test_the_stand_in_names_where_more_is() -> None:
     with pytest.raises(AttributeError, match=r"babybench.mujoco.MjvCamera is there"):
         mujoco.MjvCamera  # noqa: B018
     with pytest.raises(AttributeError) as error:
-        mujoco.MjSpec  # noqa: B018
+        mujoco.MjvFigure  # noqa: B018
     assert "install()" not in str(error.value)
 
 
