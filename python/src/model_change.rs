@@ -155,6 +155,8 @@ enum Numbers {
     Single(Vec<f32>),
     Whole(Vec<i32>),
     Byte(Vec<u8>),
+    /// Since MuJoCo 4.
+    Flag(Vec<bool>),
 }
 
 impl Numbers {
@@ -166,7 +168,7 @@ impl Numbers {
                 }
             )*};
         }
-        read!(Double f64, Single f32, Whole i32, Byte u8);
+        read!(Double f64, Single f32, Whole i32, Byte u8, Flag bool);
         Err(PyTypeError::new_err("an array of a model has real numbers"))
     }
 
@@ -182,7 +184,7 @@ impl Numbers {
                 )*}
             };
         }
-        compare!(Double f64, Single f32, Whole i32, Byte u8)
+        compare!(Double f64, Single f32, Whole i32, Byte u8, Flag bool)
     }
 }
 

@@ -64,6 +64,7 @@ __all__ = [
 ]
 
 MjsOrientation = Orientation
+_Compiled = tuple[MjModel, MjData]  # in the class, `tuple` is the method that finds one by name
 
 _LISTS = {"body": "bodies", "mesh": "meshes", "equality": "equalities"}
 _SIZES = ("njmax", "nconmax", "nstack", "nuserdata", "nkey")
@@ -276,7 +277,7 @@ class MjSpec(SpecTree):
         native = _native.PhysicsModel.from_text(self._own.write(), self.assets, self._folder)
         return MjModel._made(native)
 
-    def recompile(self, m: MjModel, d: MjData) -> tuple[MjModel, MjData]:
+    def recompile(self, m: MjModel, d: MjData) -> _Compiled:
         """Compiles the document, and takes over the state of an earlier model for what it still has, by name.
 
         Returns:
