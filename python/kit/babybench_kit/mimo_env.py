@@ -87,8 +87,6 @@ class MIMoEnv(GoalEnv):
     _forwards_attributes = True
     _updates_first = False
     """Whether actuators are updated before the first physics step of a step, too: MIMo 3."""
-    motor_delay = 0
-    """Calls of :meth:`_set_action`, less one, after which an action arrives; 0 for no delay: MIMo 3."""
     init_qpos: Array
     init_qvel: Array
     _ezpickle_args: tuple[Any, ...]
@@ -299,11 +297,11 @@ class MIMoEnv(GoalEnv):
     def _set_action(self, action: ArrayLike) -> None:
         """Gives an action to the actuation model."""
         self._core.pull()
-        self.actuation_model.action(self._delayed_action(action) if self.motor_delay else action)
+        self.actuation_model.action(self._delayed_action(action))
 
     def _delayed_action(self, action: ArrayLike) -> ArrayLike:
-        """Returns the action that arrives when another one is given."""
-        raise NotImplementedError
+        """Returns the action that arrives when another one is given: the same, but in MIMo 3."""
+        return action
 
     def _single_mujoco_step(self) -> None:
         """Advances by one physics step."""

@@ -41,8 +41,6 @@ class SensingEnv(gym.Env):  # type: ignore[type-arg,unused-ignore]
     goals_in_observation: bool
     goal: Any
     actuation_model: ActuationModel
-    sensory_delay = 0
-    """Observations, less one, after which one arrives; 0 for no delay: MIMo 3."""
     _core: Core
     _share = Share.SENSES
 
@@ -138,12 +136,12 @@ class SensingEnv(gym.Env):  # type: ignore[type-arg,unused-ignore]
         return self.vestibular.get_vestibular_obs()
 
     def _get_obs(self) -> Observation:
-        """Returns the observation: the present one, or an earlier one with ``sensory_delay``."""
-        return self._delayed_observation(self._sensed()) if self.sensory_delay else self._sensed()
+        """Returns the observation: the present one, or an earlier one with a sensory delay."""
+        return self._delayed_observation(self._sensed())
 
     def _delayed_observation(self, observation: Observation) -> Observation:
-        """Returns the observation that arrives when another one is made."""
-        raise NotImplementedError
+        """Returns the observation that arrives when another one is made: the same, but in MIMo 3."""
+        return observation
 
     def _sensed(self) -> Observation:
         """Returns the present observation."""

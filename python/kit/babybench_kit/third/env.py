@@ -106,11 +106,11 @@ class MIMoEnv(mimo_env.MIMoEnv):
 
     def _delayed_action(self, action: ArrayLike) -> ArrayLike:
         """Returns the action that arrives when another one is given."""
-        return _late(self._action_history, action, self.motor_delay)
+        return _late(self._action_history, action, self.motor_delay) if self.motor_delay else action
 
     def _delayed_observation(self, observation: Observation) -> Observation:
         """Returns the observation that arrives when another one is made."""
-        return _late(self._obs_history, observation, self.sensory_delay)
+        return _late(self._obs_history, observation, self.sensory_delay) if self.sensory_delay else observation
 
     def _reset_simulation(self) -> None:
         """Forgets the past, also what was on its way, puts the actuators to rest, and samples a goal."""
