@@ -122,10 +122,10 @@ def _shaped(name: str, values: ArrayLike, axes: int, last: int) -> _Floats:
     array = np.asarray(values, np.float64)
     if array.ndim > axes:
         raise ValueError(f"{name} can have at most {axes} dimensions, not {array.ndim}")
-    array = array.reshape((1,) * (axes - array.ndim) + array.shape)
-    if array.shape[-1] != last:
-        raise ValueError(f"trailing dimension of {name} must be {last}, got {array.shape[-1]}")
-    return array
+    shape: tuple[int, ...] = (1,) * (axes - array.ndim) + array.shape
+    if shape[-1] != last:
+        raise ValueError(f"trailing dimension of {name} must be {last}, got {shape[-1]}")
+    return array.reshape(shape)
 
 
 def _common(what: str, numbers: Sequence[int]) -> int:
