@@ -1,4 +1,4 @@
-//! Tests that MIMo, with the strength and springs of infants, does what infants of his age can do.
+//! Tests of milestones: with the strength and springs of infants, MIMo can do what infants of his age can.
 
 use babybench::config::{
     ActuationModel, Behavior, Compat, ConfigReader, Proportions, Scene, SpringModel, StrengthModel,

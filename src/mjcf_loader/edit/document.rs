@@ -118,7 +118,7 @@ impl Document {
     /// Returns the section of the document with this name, for instance `actuator`: the last of several, a new one where there is none.
     ///
     /// # Errors
-    /// [`EditError::UnknownElement`]: there is no such section in MJCF.
+    /// [`EditError::UnknownElement`]: MJCF has no such section.
     pub fn section(&mut self, name: &str) -> Result<ElementId, EditError> {
         let named = |at: &&usize| self.nodes[**at].rule.name == name;
         match self.nodes[ROOT].children.iter().rev().find(named) {

@@ -41,7 +41,7 @@ pub enum EditError {
     /// An element that is not in the document, or no longer.
     #[error("{0} is not in this document: it was removed, or belongs to another document")]
     NoElement(ElementId),
-    /// An element without which there is no document.
+    /// An element that every document needs.
     #[error("<{0}> cannot be removed: a document needs it")]
     Needed(&'static str),
     /// No element of this kind has the name.

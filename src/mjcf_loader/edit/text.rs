@@ -109,7 +109,7 @@ impl Document {
     }
 }
 
-/// Returns the text of an attribute in a file, under its name of today.
+/// Returns the text of an attribute in a file, under its current name.
 fn element_text(tree: &Tree, at: usize, name: &'static str) -> Option<String> {
     let node = &tree.nodes[at];
     match node.attribute(name) {

@@ -10,7 +10,7 @@ const DOUBT: f64 = 0.1;
 const ANYWHERE: f64 = 1e-5;
 /// Number of experiences of a movement that are kept, the last ones.
 const OUTCOMES: usize = 10;
-/// Number of movements that are kept: as many as a million steps make.
+/// Maximum number of movements in memory: those of a million steps.
 const MOVEMENTS: usize = 12_000;
 
 /// An action that is held for some steps.
