@@ -70,6 +70,13 @@ def test_shapes_that_do_not_agree_are_refused(options: dict[str, object], text: 
         rollout.rollout(model, data, starts(model, 2), **options)  # type: ignore[arg-type]
 
 
+def test_a_rollout_needs_a_model_and_a_state() -> None:
+    model, data = arm()
+    for models, states in (([], data), (model, [])):
+        with pytest.raises(ValueError, match="at least one model and one state"):
+            rollout.rollout(models, states, starts(model, 2))
+
+
 def test_a_copy_goes_on_with_the_same_bits() -> None:
     model, data = arm()
     data.ctrl[0] = 1.0

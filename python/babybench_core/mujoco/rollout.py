@@ -61,13 +61,16 @@ def rollout(
 
     Returns:
         States (runs, steps, state) and readings (runs, steps, nsensordata). A run that diverges repeats its last
-        numbers, as in MuJoCo.
+        numbers, or the initial state.
 
     Raises:
         ValueError: Arguments whose shapes do not agree.
     """
     models = [model] if isinstance(model, MjModel) else list(model)
-    work = data if isinstance(data, MjData) else next(iter(data))
+    states = [data] if isinstance(data, MjData) else list(data)
+    if not models or not states:
+        raise ValueError("a rollout needs at least one model and one state to work in")
+    work = states[0]
     first = models[0]
     if int(control_spec) & ~_USER:
         raise ValueError(f"control_spec is {control_spec}: it must be a sum of inputs (mjSTATE_USER)")
@@ -87,7 +90,7 @@ def rollout(
         _begin(own, at, int(control_spec), starts[run % len(starts)])
         at.qacc_warmstart[:] = 0.0 if warm is None else warm[run % len(warm)]
         applied = None if inputs is None else inputs[run % len(inputs)]
-        _run(own, at, int(control_spec), applied, state[run], sensordata[run])
+        _run(own, at, int(control_spec), applied, starts[run % len(starts)], state[run], sensordata[run])
     return state, sensordata
 
 
@@ -157,16 +160,23 @@ def _begin(model: MjModel, data: MjData, control_spec: int, start: _Floats) -> N
 
 
 def _run(
-    model: MjModel, data: MjData, control_spec: int, applied: Optional[_Floats], state: _Floats, sensors: _Floats
+    model: MjModel,
+    data: MjData,
+    control_spec: int,
+    applied: Optional[_Floats],
+    start: _Floats,
+    state: _Floats,
+    sensors: _Floats,
 ) -> None:
+    last, seen = start, np.zeros(sensors.shape[1])
     for step in range(len(state)):
         if applied is not None:
             mj_setState(model, data, applied[step % len(applied)], control_spec)
         try:
             mj_step(model, data)
         except RuntimeError:  # it diverged
-            before = max(step - 1, 0)
-            state[step:], sensors[step:] = state[before], sensors[before]
+            state[step:], sensors[step:] = last, seen
             return
         mj_getState(model, data, state[step], _FULL)
         sensors[step] = data.sensordata
+        last, seen = state[step], sensors[step]
