@@ -222,7 +222,7 @@ impl Document {
     fn refers_within(&self, at: usize, kind: Kind, naming: Naming, names: &BTreeSet<(Kind, String)>) -> bool {
         let node = &self.nodes[at];
         let named = self.all_references(at);
-        // without a side site, MuJoCo 3.3.0 looks for the wrapped geom of a tendon under its old name
+        // without a side site, MuJoCo 3.3.0 does not find the renamed geom that a tendon wraps around
         let bare = |at: &usize| self.nodes[*at].rule.name == "geom" && self.nodes[*at].attribute("sidesite").is_none();
         if kind == Kind::Tendon && !naming.is_none() && node.children.iter().any(bare) {
             return false;
