@@ -136,7 +136,7 @@ impl Simulation {
     /// assets.insert("t.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n")?;
     /// let model = physics::compile(load_str(text, "model.xml", &assets)?)?;
     /// let scene = Simulation::new(Arc::new(model), Arc::new(assets));
-    /// assert!((scene.model().body_mass[1] - 1000.0 / 6.0).abs() < 1e-3, "a sixth of a cubic metre of water");
+    /// assert!((scene.model().body_mass[1] - 1000.0 / 6.0).abs() < 1e-5, "a sixth of a cubic metre of water");
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn new(model: Arc<Model>, assets: Arc<dyn AssetSource>) -> Self {
