@@ -64,7 +64,7 @@ test("a link that is pasted into an open page is opened, and back and forward go
   await steps(page, 10);
   const link = await hash(page);
   await page.evaluate(() => mimo.change({ scene: "cubes" }));
-  await page.waitForTimeout(500);
+  await until(page, () => history.state?.state.settings.scene === "cubes");
   await page.evaluate((h) => { location.hash = h; }, link);
   await until(page, () => mimo.scene.settings.scene === "base" && mimo.moment.steps === 10);
   await idle(page);
