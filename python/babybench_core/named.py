@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from abc import ABC
 from collections.abc import Callable
 from typing import Any
 
@@ -34,7 +35,7 @@ PREFIX = {"joint": "jnt", "camera": "cam", "equality": "eq", "texture": "tex", "
 
 def widened(values: NDArray[Any], width: int) -> NDArray[Any]:
     """Returns rows of a width, filled up with zeros."""
-    rows = values.reshape(len(values), -1)
+    rows = values.reshape(len(values), -1) if len(values) else np.zeros((0, width), values.dtype)
     wide = np.zeros((len(rows), width), dtype=rows.dtype)
     wide[:, : rows.shape[1]] = rows
     return wide
@@ -67,8 +68,11 @@ class Element:
         return f"<{self._kind} {self.id} {self.name!r}>"
 
 
-class Named:
-    """Look-up of elements by number and by name, shared by models and states."""
+class Named(ABC):
+    """Look-up of elements by number and by name, shared by models and states.
+
+    What shows an environment under MuJoCo's names registers with the class that it stands for, so that ``isinstance`` holds.
+    """
 
     _names: dict[str, list[str]]
     _numbers: dict[str, dict[str, int]]

@@ -99,11 +99,15 @@ pub fn options<'py>(py: Python<'py>, model: &Model) -> PyResult<Bound<'py, PyDic
         ("density", model.opt.density),
         ("viscosity", model.opt.viscosity),
         ("extent", model.stat.extent),
+        ("meaninertia", model.stat.meaninertia),
+        ("meanmass", model.stat.meanmass),
+        ("meansize", model.stat.meansize),
         ("znear", model.vis.znear),
         ("zfar", model.vis.zfar),
     ] {
         options.set_item(name, value)?;
     }
+    options.set_item("center", model.stat.center[..].to_array(py)?)?;
     options.set_item("gravity", model.opt.gravity[..].to_array(py)?)?;
     options.set_item("wind", model.opt.wind[..].to_array(py)?)?;
     options.set_item("name", &model.name)?;

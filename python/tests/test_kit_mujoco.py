@@ -93,16 +93,44 @@ def test_colours_of_the_model_reach_the_pictures(make: Make) -> None:
 
 
 @without
-def test_the_stand_in_names_where_more_is() -> None:
-    with pytest.raises(NotImplementedError, match=r"babybench.mujoco.MjModel.from_xml_string does"):
-        mujoco.MjModel.from_xml_string("<mujoco/>")
-    with pytest.raises(TypeError, match=r"babybench.mujoco.MjData does"):
-        mujoco.MjData(None)
-    with pytest.raises(AttributeError, match=r"babybench.mujoco.MjvCamera is there"):
-        mujoco.MjvCamera  # noqa: B018
-    with pytest.raises(AttributeError) as error:
+def test_the_stand_in_is_all_of_babybench_mujoco(make: Make) -> None:
+    import mujoco.rollout
+    import mujoco.viewer
+
+    assert mujoco.__name__ == "babybench.mujoco"
+    env = make().unwrapped
+    assert isinstance(env.model, mujoco.MjModel)
+    assert isinstance(env.data, mujoco.MjData)
+    assert mujoco.MjSpec().compile().nbody == 1
+    with pytest.raises(TypeError, match=r"the state of an environment is env\.data"):
+        mujoco.MjData(env.model)
+    with pytest.raises(AttributeError, match="pip install mujoco"):
         mujoco.MjvFigure  # noqa: B018
-    assert "install()" not in str(error.value)
+
+
+@without
+@pytest.mark.filterwarnings("ignore:make_env")
+def test_renderers_draw_environments(make: Make) -> None:
+    env = make().unwrapped
+    env.reset()
+    with mujoco.Renderer(env.model, 24, 32) as renderer:
+        renderer.update_scene(env.data, "corner")
+        np.testing.assert_array_equal(renderer.render(), env._core.engine.render("corner", 32, 24))
+        assert renderer.render(out=np.zeros((24, 32, 3), np.uint8)).any()
+        free = mujoco.MjvCamera()
+        mujoco.mjv_defaultFreeCamera(env.model, free)
+        renderer.update_scene(env.data)
+        alone = renderer.render()
+        renderer.update_scene(env.data, free)
+        np.testing.assert_array_equal(renderer.render(), alone)
+        renderer.enable_depth_rendering()
+        assert renderer.render().shape == (24, 32)
+        renderer.enable_segmentation_rendering()
+        assert renderer.render().shape == (24, 32, 2)
+        with pytest.raises(ValueError, match='"moon" does not exist'):
+            renderer.update_scene(env.data, "moon")
+        with pytest.raises(ValueError, match=r"env\.data of the environment"):
+            renderer.update_scene(make().unwrapped.data)
 
 
 @without

@@ -233,13 +233,6 @@ def test_any_scene_with_mimo_is_served(tmp_path: Path) -> None:
     assert np.allclose(env.data.qvel[-6:], before, atol=1e-9)
 
 
-def test_model_and_data_cannot_be_replaced() -> None:
-    env = MIMoDummyEnv(touch_params=None, **BLIND)
-    for name in ("model", "data"):
-        with pytest.raises(TypeError, match=f"env.{name} cannot be replaced.*model_path"):
-            setattr(env, name, None)
-
-
 def test_mimo_has_an_age() -> None:
     def height(age: float | None) -> float:
         return float(MIMoDummyEnv(touch_params=None, **BLIND, age=age).model.body("head").subtreemass[0])

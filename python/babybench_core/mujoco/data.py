@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from .. import _native
 from ..contacts import ContactList
 from ..named import KINDS, PREFIX, Named, accessor, span
-from .model import MjModel, matrix_places, views
+from .model import MjModel, is_compiled, matrix_places, views
 from .options import MISSING
 
 _BODY = (
@@ -47,9 +47,10 @@ class MjData(Named):
 
     def __init__(self, model: MjModel) -> None:
         """Creates a state at the positions ``qpos0``, at rest, without computed quantities."""
-        if not isinstance(model, MjModel):
+        if not is_compiled(model):
             raise TypeError(
-                f"MjData needs an MjModel of babybench.mujoco, not {type(model).__module__}.{type(model).__name__}"
+                f"MjData needs an MjModel of babybench.mujoco, not {type(model).__module__}.{type(model).__name__}; the state of "
+                "an environment is env.data"
             )
         native = _native.PhysicsData(model._own)
         arrays = views(native.memory, [(name, shape) for name, _, shape in native.layout])

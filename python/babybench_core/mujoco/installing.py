@@ -15,7 +15,17 @@ _ENVIRONMENTS = "gymnasium.envs.mujoco.mujoco_env"
 
 def _own() -> dict[str, ModuleType]:
     names = {_NAME: "babybench.mujoco", _RENDERING: "babybench_core.mujoco.gymnasium_rendering"}
+    names.update({f"{_NAME}.{part}": f"babybench.mujoco.{part}" for part in ("rollout", "viewer")})
     return {name: importlib.import_module(own) for name, own in names.items()}
+
+
+def put() -> ModuleType:
+    """Puts the modules into the place of MuJoCo's and of Gymnasium's renderer, unless they were imported already."""
+    own = _own()
+    sys.modules[_NAME] = own[_NAME]
+    for name, module in own.items():
+        sys.modules.setdefault(name, module)
+    return own[_NAME]
 
 
 def _real(module: ModuleType | None) -> bool:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
 from typing import Any, NoReturn
 
 import numpy as np
@@ -104,6 +105,22 @@ def _contents(assets: Mapping[str, bytes]) -> dict[str, bytes]:
     return {name: bytes(content) for name, content in assets.items()}
 
 
+@dataclass(frozen=True)
+class Source:
+    """What a model was compiled from."""
+
+    text: str
+    """The document."""
+    folder: str
+    """Where files that it names are looked for."""
+    files: Mapping[str, bytes] = field(default_factory=dict)
+    """Contents by name, which replace files."""
+
+    def compile(self) -> _native.PhysicsModel:
+        """Compiles it."""
+        return _native.PhysicsModel.from_text(self.text, dict(self.files), self.folder)
+
+
 class MjModel(Named):
     """A compiled model, under the names and in the shapes of MuJoCo's ``MjModel``.
 
@@ -132,14 +149,21 @@ class MjModel(Named):
             ValueError: The document cannot be read, or has something that the engine does not know, with the place.
         """
         path = os.fspath(filename)
-        if assets:
-            try:
-                with open(path, encoding="utf-8") as file:
-                    text = file.read()
-            except OSError as error:
-                raise ValueError(f"{path}: {error.strerror}") from error
-            return cls._made(_native.PhysicsModel.from_text(text, _contents(assets), os.path.dirname(path)))
-        return cls._made(_native.PhysicsModel.from_file(path))
+        folder = os.path.dirname(path)
+        try:
+            with open(path, encoding="utf-8") as file:
+                text = file.read()
+        except UnicodeDecodeError as error:
+            if assets:
+                raise ValueError(f"{path}: {error}: with assets it must be UTF-8") from error
+            return cls._made(_native.PhysicsModel.from_file(path), None)
+        except OSError as error:
+            if not assets:
+                return cls._made(_native.PhysicsModel.from_file(path), None)  # says what is wrong
+            raise ValueError(f"{path}: {error.strerror}") from error
+        files = _contents(assets or {})
+        native = _native.PhysicsModel.from_text(text, files, folder) if assets else _native.PhysicsModel.from_file(path)
+        return cls._made(native, Source(text, os.path.abspath(folder), files))
 
     @classmethod
     def from_xml_string(cls, xml: str, assets: Mapping[str, bytes] | None = None) -> MjModel:
@@ -154,7 +178,8 @@ class MjModel(Named):
         Raises:
             ValueError: As :meth:`from_xml_path`; or two assets of one name.
         """
-        return cls._made(_native.PhysicsModel.from_text(xml, _contents(assets or {}), ""))
+        files = _contents(assets or {})
+        return cls._made(_native.PhysicsModel.from_text(xml, files, ""), Source(xml, os.getcwd(), files))
 
     @classmethod
     def from_binary_path(cls, filename: str, assets: Any = None) -> MjModel:
@@ -164,7 +189,7 @@ class MjModel(Named):
         )
 
     @classmethod
-    def _made(cls, native: _native.PhysicsModel) -> MjModel:
+    def _made(cls, native: _native.PhysicsModel, source: Source | None) -> MjModel:
         self = cls.__new__(cls)
         settings, extras = native.settings(), native.extras()
         names = {kind: list(found) for kind, found in native.names().items()}
@@ -175,7 +200,8 @@ class MjModel(Named):
         arrays.update({name: array for name, array in columns.items() if not name.startswith("vis_")})
         own = self.__dict__
         own.update({name: int(settings[name]) for name in _SIZES})
-        own.update(_own=native, _names=names, _numbers=numbers(names), _arrays=arrays, _extras=extras, _chains={})
+        own.update(_own=native, _source=source, _names=names, _numbers=numbers(names))
+        own.update(_arrays=arrays, _extras=extras, _chains={})
         own.update(arrays)
         own["writable"] = tuple(arrays)
         own.update(ntex=len(names["texture"]), nmat=len(names["material"]), nnumeric=len(names["numeric"]))
@@ -209,7 +235,7 @@ class MjModel(Named):
         self._arrays[name][...] = value
 
     def __copy__(self) -> MjModel:
-        return MjModel._made(self._own.copy())
+        return MjModel._made(self._own.copy(), self._source)
 
     def __deepcopy__(self, memo: Any) -> MjModel:
         return self.__copy__()
@@ -276,6 +302,11 @@ class MjModel(Named):
             return self.numeric_data[first : first + self.numeric_size[number]]
         array: NDArray[Any] = getattr(self, f"{PREFIX.get(kind, kind)}_{name}")
         return array[number] if array.ndim > 1 else array[number : number + 1]
+
+
+def is_compiled(model: Any) -> bool:
+    """Tells a model of this module from everything else, also from the model of an environment."""
+    return isinstance(model, MjModel) and "_own" in model.__dict__
 
 
 _KIND_OF = {"jnt": "joint", "cam": "camera"}

@@ -11,7 +11,7 @@ from .. import _native
 from .data import MjData
 from .enums import mjtCamera, mjtObj
 from .jacobians import check
-from .model import MjModel
+from .model import MjModel, is_compiled
 from .scene_option import MjvOption, shown
 
 __all__ = ["MjvCamera", "Renderer", "mjv_defaultCamera", "mjv_defaultFreeCamera"]
@@ -85,9 +85,14 @@ def draw(
 class Renderer:
     """Draws states of a model, as MuJoCo's ``Renderer`` does, without shadows and reflections."""
 
+    def __new__(cls, model: Any, height: int = 240, width: int = 320, max_geom: int = 10000) -> Any:
+        """Makes what draws an environment, if the model is that of one."""
+        of_environment = getattr(type(model), "_renderer", None)
+        return object.__new__(cls) if of_environment is None else of_environment(model, int(height), int(width))
+
     def __init__(self, model: MjModel, height: int = 240, width: int = 320, max_geom: int = 10000) -> None:
         """Takes the size of pictures, pixels."""
-        if not isinstance(model, MjModel):
+        if not is_compiled(model):
             raise TypeError(
                 f"Renderer needs an MjModel of babybench.mujoco, not {type(model).__module__}.{type(model).__name__}"
             )

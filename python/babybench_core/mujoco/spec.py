@@ -10,7 +10,7 @@ from typing import Any, NoReturn
 
 from .. import _native
 from .data import MjData
-from .model import MjModel
+from .model import MjModel, Source
 from .spec_bodies import MjsBody
 from .spec_elements import MjsCamera, MjsFrame, MjsGeom, MjsJoint, MjsLight, MjsSite
 from .spec_fields import Orientation
@@ -274,8 +274,8 @@ class MjSpec(SpecTree):
             ValueError: Something in it is at fault; the line is that of :meth:`to_xml`.
         """
         self._flush()
-        native = _native.PhysicsModel.from_text(self._own.write(), self.assets, self._folder)
-        return MjModel._made(native)
+        source = Source(self._own.write(), self._folder, dict(self.assets))
+        return MjModel._made(source.compile(), source)
 
     def recompile(self, m: MjModel, d: MjData) -> _Compiled:
         """Compiles the document, and takes over the state of an earlier model for what it still has, by name.

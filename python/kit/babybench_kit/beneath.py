@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from babybench_core import _native
 
 from .course import Course
+from .scene import Document
 
 
 class Beneath(Protocol):
@@ -18,7 +19,7 @@ class Beneath(Protocol):
 
     config: dict[str, Any]
     assets: Path | None
-    document: Path | None
+    document: Document | None
     blueprint: _native.Blueprint
     engine: _native.Env
     parts: _native.Parts

@@ -14,7 +14,7 @@ import numpy as np
 from babybench_core import _native
 
 from .flat import flat
-from .scene import read_any_scene
+from .scene import Document, read_any_scene
 from .settings import Settings, blueprint
 
 _TURNED = ("quat", "axisangle", "xyaxes", "zaxis", "euler", "fromto")
@@ -41,7 +41,7 @@ def grown(path: Path, age: float) -> ElementTree.Element:
     """
     path = path.resolve()
     scene = read_any_scene(path)
-    scene.document = path
+    scene.document = Document.at(path)
     config = {
         "compat": "reference",
         "age": float(age),

@@ -20,12 +20,18 @@ _DEFAULT_SCENE = Scene(
 """Description of :data:`SCENE_NAME`."""
 
 
-def known_scene(model_path: str | os.PathLike[str], any_scene: bool) -> Scene:
-    """Returns what is known of a scene, which is written first if it is one of this package."""
+def prepare_scene(model_path: str | os.PathLike[str]) -> None:
+    """Writes a scene of this package on first use."""
     path = Path(model_path)
     for version in (2, 3):
         if not path.is_file() and path.parent == assets_path(version):
-            assets_folder(version)  # on first use
+            assets_folder(version)
+
+
+def known_scene(model_path: str | os.PathLike[str], any_scene: bool) -> Scene:
+    """Returns what is known of a scene, which is written first if it is one of this package."""
+    path = Path(model_path)
+    prepare_scene(path)
     if path.is_file():
         return read_any_scene(path) if any_scene else read_scene(path)
     if path.name == SCENE_NAME:

@@ -8,18 +8,20 @@ from __future__ import annotations
 
 import os
 from collections.abc import Mapping
-from typing import Any, NoReturn
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from babybench_core import _native, looks
+from babybench_core.mujoco.model import MjModel, Source
 
 from .actuation import MODELS, ActuationModel, SpringDamperModel
 from .core import Core
 from .course import Share
+from .given_model import Given, TakesModels
 from .goal_env import GoalEnv
-from .known_scenes import SCENE_NAME, known_scene
+from .known_scenes import SCENE_NAME, known_scene, prepare_scene
 from .looks import take_looks
 from .renderer import MujocoRenderer
 from .replaceable import refuse_uncalled, replaced
@@ -51,7 +53,7 @@ _UNCALLED = ("_step_mujoco_simulation", "viewer_setup")
 """Methods of Gymnasium's ``MujocoEnv`` that nothing calls here."""
 
 
-class MIMoEnv(GoalEnv):
+class MIMoEnv(TakesModels, GoalEnv):
     """MIMo in a scene, with the senses and the actuation that the arguments ask for.
 
     Args:
@@ -73,7 +75,8 @@ class MIMoEnv(GoalEnv):
 
     Attributes:
         model, data: MuJoCo's ``MjModel`` and ``MjData`` of the present state where MuJoCo is installed, or what stands for them.
-            ``qpos``, ``qvel``, ``ctrl`` and ``qfrc_applied`` of ``data`` can be written to.
+            ``qpos``, ``qvel``, ``ctrl`` and ``qfrc_applied`` of ``data`` can be written to. Both can be replaced by a model that
+            :mod:`babybench.mujoco` has compiled and a state of it, above all in :meth:`_initialize_simulation`.
         init_qpos, init_qvel: The state in which episodes start.
         touch, proprioception, vestibular, vision, actuation_model: The senses and the actuation.
         mimo_joints, mimo_actuators: Ids of MIMo's joints and actuators.
@@ -135,16 +138,20 @@ class MIMoEnv(GoalEnv):
         self.render_mode, self.camera_id, self.camera_name = render_mode, camera_id, camera_name
         self.fullpath = os.path.abspath(model_path)
         self._initial_qpos = initial_qpos
-        self._actuation, self._config = actuation_model, config or {}
-        self._initialize_simulation()
-        if "_core" not in self.__dict__:
-            raise TypeError(
-                f"{type(self).__name__}._initialize_simulation does not call that of MIMoEnv: the engine compiles the scene "
-                "there, and takes no other model; call super()._initialize_simulation() and change env.model after it"
-            )
+        self._actuation, self._config, self._camera_config = actuation_model, config or {}, default_camera_config
+        self._source: Source | None = None
+        prepare_scene(self.fullpath)
+        self._given: Given | None = None
+        self._making = True
+        self.actuation_model: Any = actuation_model
+        self._take_over(self._initialize_simulation())
+        self._sense_anew()
+
+    def _sense_anew(self) -> None:
+        """Makes spaces and senses for the model, and takes one physics step if the scene is none of BabyBench's."""
         self._set_action_space()
         self._own_seed = self.action_space.np_random
-        self.mujoco_renderer = MujocoRenderer(self._core, default_camera_config)
+        self.mujoco_renderer = MujocoRenderer(self._core, self._camera_config)
         self.proprioception = self.touch = self.vision = self.vestibular = None
         self._core.reset_data()
         self._core.forward(self.init_qpos, self.init_qvel)
@@ -164,17 +171,31 @@ class MIMoEnv(GoalEnv):
             return Share.SENSES
         return Share.STEP if replaced(self, _ORIGINAL, _WITHIN_STEP) else Share.NOTHING
 
-    def _initialize_simulation(self) -> None:
-        """Compiles the scene, and makes the actuation model."""
-        self._core = self._compile(known_scene(self.fullpath, self._any_scene), self._actuation, self._config)
+    def _initialize_simulation(self) -> Any:
+        """Compiles the scene, and makes the actuation model.
+
+        A subclass that replaces this assigns :attr:`model` and :attr:`data`, or returns both.
+        """
+        self._core = self._compile(
+            known_scene(self.fullpath, self._any_scene), self._actuation, self._config, self._age
+        )
         self._name_parts()
         self._core.move(self.init_qpos)
         self._set_initial_position(self._initial_qpos)
         self.init_qpos = self._core.read("qpos")
-        self.actuation_model: ActuationModel = self._actuation(self, self.mimo_actuators)
+        self._make_actuation()
         self._core.plain_actuation = self._core.whole and self._actuation in MODELS.values()
+        if type(self)._initialize_simulation is not MIMoEnv._initialize_simulation:
+            return self.model, self.data  # for a subclass, which may unpack them
+        return None
 
-    def _compile(self, scene: Scene, actuation_model: type[ActuationModel], config: Mapping[str, Any]) -> Core:
+    def _make_actuation(self) -> None:
+        """Makes :attr:`actuation_model`."""
+        self.actuation_model = self._actuation(self, self.mimo_actuators)
+
+    def _compile(
+        self, scene: Scene, actuation_model: type[ActuationModel], config: Mapping[str, Any], age: float | None
+    ) -> Core:
         """Compiles a scene for the senses and the actuation that the arguments ask for."""
         names = (name for cls in actuation_model.__mro__ if (name := getattr(cls, "_engine_name", "")))
         settings = engine_settings(
@@ -187,7 +208,7 @@ class MIMoEnv(GoalEnv):
             vision=self.vision_params,
             balance=self.vestibular_params,
             actuation=next(names, "spring_damper"),
-            age=self._age,
+            age=age,
         )
         return Core(settings, scene, self.width, self.height)
 
@@ -204,30 +225,6 @@ class MIMoEnv(GoalEnv):
             self.init_qpos[:3] = core.place
 
     # --- what scripts see ---
-
-    @property
-    def model(self) -> Any:
-        """Returns MuJoCo's model of the scene, or its stand-in."""
-        return self._core.model
-
-    @model.setter
-    def model(self, model: Any) -> None:
-        self._refuse_other("model")
-
-    @property
-    def data(self) -> Any:
-        """Returns MuJoCo's current state, or its stand-in."""
-        return self._core.data
-
-    @data.setter
-    def data(self, data: Any) -> None:
-        self._refuse_other("data")
-
-    def _refuse_other(self, name: str) -> NoReturn:
-        raise TypeError(
-            f"env.{name} cannot be replaced: the engine compiles the scene, and takes no other model. Write the scene as a file "
-            "and give its path to the constructor (model_path), or write into the arrays of env.model and env.data"
-        )
 
     @property
     def dt(self) -> float:
@@ -282,11 +279,13 @@ class MIMoEnv(GoalEnv):
         if not initial_qpos:
             return
         array, joints = self._core.blueprint.model_array, self._core.names["joint"]
-        qpos = self._core.read("qpos")
+        given = self._given
+        qpos = self._core.read("qpos") if given is None else given.data.qpos
         for name, position in initial_qpos.items():
             first = array("jnt_qposadr")[joints.index(name)]
             qpos[first : first + np.size(position)] = position
-        self._core.move(qpos)
+        if given is None:
+            self._core.move(qpos)
 
     def _set_action_space(self) -> None:
         """Makes :attr:`action_space`."""
@@ -415,12 +414,21 @@ class MIMoEnv(GoalEnv):
         """Returns what a copy continues with: the arguments, the state of the engine, and what else the environment holds."""
         kept = {name: value for name, value in self.__dict__.items() if name not in _REMADE}
         engine = self._core.engine
-        return {"snapshot": engine.snapshot(), "changes": engine.model_changes, "looks": looks.of(engine), "kept": kept}
+        return {
+            "source": self._source,
+            "snapshot": engine.snapshot(),
+            "changes": engine.model_changes,
+            "looks": looks.of(engine),
+            "kept": kept,
+        }
 
     def __setstate__(self, state: dict[str, Any]) -> None:
         """Makes the environment anew and continues there."""
         kept = state["kept"]
         self.__init__(*kept["_ezpickle_args"], **kept["_ezpickle_kwargs"])  # type: ignore[misc,unused-ignore]
+        source = state["source"]
+        if source is not None:
+            self.model = MjModel._made(source.compile(), source)
         self.__dict__.update(kept)
         self._core.engine.change_model(state["changes"])
         take_looks(self._core, state["looks"])

@@ -72,8 +72,8 @@ def _grow(model: Any, core: Beneath) -> None:
 
 def mujoco_model(mujoco: ModuleType, core: Beneath) -> Any:
     """Compiles the scene of an environment with MuJoCo; pictures on surfaces are the library's small ones."""
-    if core.document is not None:
-        root = flat(core.document.resolve())
+    if core.document is not None and core.document.path is not None:
+        root = flat(core.document.path)
         xml, images = _with_small_textures({}, ElementTree.tostring(root, encoding="unicode"), {})
     else:
         xml, images = _native.scene_file(core.config, core.assets)
@@ -259,7 +259,9 @@ class Watched:
 def make_model(core: Beneath) -> Any:
     """Makes the model that scripts see: MuJoCo's own where it is installed."""
     mujoco = mujoco_module()
-    model = mujoco_model(mujoco, core) if mujoco is not None else view_model(core)
+    # MuJoCo has not seen a document that a program has compiled with the engine
+    shown = mujoco is None or (core.document is not None and core.document.path is None)
+    model = view_model(core) if mujoco is None or shown else mujoco_model(mujoco, core)
     active = np.asarray(core.parts.eq_active0).astype(model.eq_active0.dtype)
     model.eq_active0[:] = active
     for name, array in core.engine.model_changes.items():

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 import sys
+from collections.abc import Mapping, Set
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -32,6 +33,25 @@ class SceneError(ValueError):
     """A scene that is not one of BabyBench's."""
 
 
+@dataclass(frozen=True)
+class Document:
+    """A document that is compiled as it stands."""
+
+    text: str
+    folder: Path
+    """Where files that it names are looked for."""
+    files: Mapping[str, bytes] = field(default_factory=dict)
+    """Contents by name, which replace files."""
+    path: Path | None = None
+    """The file that it was read from; nothing if a program has compiled it."""
+
+    @classmethod
+    def at(cls, path: Path) -> Document:
+        """Reads a file."""
+        path = path.resolve()
+        return cls(path.read_text(encoding="utf-8"), path.parent, path=path)
+
+
 @dataclass
 class Scene:
     """The content of a ``scene.xml``."""
@@ -48,7 +68,7 @@ class Scene:
     """Whether its actuators are position servos; nothing if it has none."""
     third: bool = False
     """Whether it has MIMo 3, whose chest is a body of its own."""
-    document: Path | None = None
+    document: Document | None = None
     """The document, if it is compiled as it stands: any scene with MIMo."""
 
 
@@ -135,8 +155,12 @@ def read_any_scene(path: Path) -> Scene:
     try:
         return read_scene(path)
     except (SceneError, KeyError):
-        names = _bodies(path)
-        return Scene(version="v2" if "right_ffdistal" in names else "v1", third=names >= _CHEST, document=path)
+        return document_scene(Document.at(path), _bodies(path))
+
+
+def document_scene(document: Document, bodies: Set[str | None]) -> Scene:
+    """Returns the scene that is a document with these bodies."""
+    return Scene(version="v2" if "right_ffdistal" in bodies else "v1", third=bodies >= _CHEST, document=document)
 
 
 _CHEST = {"chest", "upper_body", "lower_body"}

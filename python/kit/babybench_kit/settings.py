@@ -171,11 +171,12 @@ def blueprint(settings: Settings, scene: Scene) -> _native.Blueprint:
         return _blueprint(json.dumps(config, sort_keys=True), scene.assets)
     if scene.document is None:
         return _native.Blueprint.by_hand(config, touch_spacing=settings.spacing or [], assets=scene.assets)
-    path = scene.document.resolve()
+    document = scene.document
     return _native.Blueprint.by_hand(
         config,
-        document=path.read_text(encoding="utf-8"),
+        document=document.text,
         version=scene.version,
-        folder=path.parent,
+        folder=document.folder,
+        files=dict(document.files),
         touch_spacing=settings.spacing or [],
     )

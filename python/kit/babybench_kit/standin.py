@@ -47,13 +47,18 @@ def serve(name: str) -> None:
     """Puts the real module of a name into the place of its stand-in, or else the tree that stands in for it."""
     if name == "mujoco":
         spec = None if os.environ.get(MUJOCO) == "off" else real(name)
+        if spec is None:
+            from babybench_core.mujoco.installing import put
+
+            put()
+            return
     else:
         sys.modules.pop(name, None)  # the stand-in itself, which would pass for MIMo's own
         spec = swap.find(name)
         if spec is None and os.environ.get(swap.CHOICE) == "original":
             text = f"No module named {name!r}: MIMo is not installed, but {swap.CHOICE}=original asks for it"
             raise ModuleNotFoundError(text, name=name)
-    spec = spec or own(name)
+        spec = spec or own(name)
     if spec is None or spec.loader is None:
         raise ModuleNotFoundError(f"No module named {name!r}", name=name)
     module = importlib.util.module_from_spec(spec)

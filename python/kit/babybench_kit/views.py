@@ -9,7 +9,7 @@ fields of view.
 
 from __future__ import annotations
 
-from typing import Any, NoReturn
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,8 +17,9 @@ from numpy.typing import NDArray
 from babybench_core import _native
 from babybench_core.contacts import ContactList
 from babybench_core.looks import LOOKS
-from babybench_core.mujoco.model import _fixed
-from babybench_core.mujoco.options import visual, with_rows
+from babybench_core.mujoco.data import MjData
+from babybench_core.mujoco.model import MjModel, _fixed
+from babybench_core.mujoco.options import Settings, visual, with_rows
 from babybench_core.named import KINDS as _KINDS
 from babybench_core.named import PREFIX as _PREFIX
 from babybench_core.named import Named as _Named
@@ -26,6 +27,8 @@ from babybench_core.named import accessor as _accessor
 from babybench_core.named import numbers as _numbers
 from babybench_core.named import span as _span
 from babybench_core.named import widened as _widened
+
+from .view_renderer import ViewRenderer
 
 _MODEL_HELP = (
     "{name}: the stand-in for MjModel does not have it; install mujoco (pip install mujoco), "
@@ -87,32 +90,10 @@ class Options:
         raise AttributeError(_MODEL_HELP.format(name=f"opt.{name}"))
 
 
-_DOCUMENTS = (
-    "the stand-in for MuJoCo shows environments (env.model, env.data) and compiles no documents: babybench.mujoco.{name} does, "
-    "and babybench.mujoco.install() lets `import mujoco` mean it; or pip install mujoco"
-)
-
-
 class ModelView(_Named):
     """The compiled scene under the names of ``MjModel``."""
 
-    @staticmethod
-    def from_xml_string(*_: Any, **__: Any) -> NoReturn:
-        """Says what compiles documents.
-
-        Raises:
-            NotImplementedError: Always.
-        """
-        raise NotImplementedError(_DOCUMENTS.format(name="MjModel.from_xml_string"))
-
-    @staticmethod
-    def from_xml_path(*_: Any, **__: Any) -> NoReturn:
-        """Says what compiles documents.
-
-        Raises:
-            NotImplementedError: Always.
-        """
-        raise NotImplementedError(_DOCUMENTS.format(name="MjModel.from_xml_path"))
+    _renderer = ViewRenderer
 
     def __init__(self, blueprint: _native.Blueprint, engine: _native.Env, width: int, height: int) -> None:
         """Shows the scene of a blueprint as an environment has it, and the largest size of its pictures, pixels."""
@@ -137,6 +118,8 @@ class ModelView(_Named):
         columns = with_rows(_native.model_columns(engine), {})
         own.update({name: columns[name] for name in LOOKS})
         own["vis"] = visual(columns, width, height)
+        statistics = {name: options[name] for name in ("extent", "meaninertia", "meanmass", "meansize")}
+        own["stat"] = Settings("stat", {**statistics, "center": _fixed(options["center"], "stat.center")})
         keys = ("iterations", "tolerance", "ls_iterations", "ls_tolerance", "ccd_iterations", "ccd_tolerance")
         own["opt"] = Options({key: options[key] for key in (*keys, *OPTIONS)})
 
@@ -200,16 +183,8 @@ _JOINT_ROWS = ("xanchor", "xaxis")
 class DataView(_Named):
     """The present state under the names of ``MjData``."""
 
-    def __init__(
-        self, env: _native.Env, model: ModelView | None = None, shapes: dict[str, tuple[int, ...]] | None = None
-    ) -> None:
-        """Makes room for the arrays in one piece of memory, which tells whether somebody holds one of them.
-
-        Raises:
-            TypeError: A script makes a state of its own.
-        """
-        if model is None or shapes is None:
-            raise TypeError(_DOCUMENTS.format(name="MjData"))
+    def __init__(self, env: _native.Env, model: ModelView, shapes: dict[str, tuple[int, ...]]) -> None:
+        """Makes room for the arrays in one piece of memory, which tells whether somebody holds one of them."""
         own = self.__dict__
         sizes = {name: int(np.prod(shape)) for name, shape in shapes.items()}
         memory = np.zeros(sum(sizes.values()))
@@ -295,3 +270,6 @@ for _name, _kind in _KINDS.items():
     setattr(ModelView, _name, _accessor(_kind))
     if _kind not in ("texture", "material", "equality", "tendon"):
         setattr(DataView, _name, _accessor(_kind))
+
+MjModel.register(ModelView)
+MjData.register(DataView)

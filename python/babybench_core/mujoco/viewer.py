@@ -6,7 +6,7 @@ import contextlib
 from collections.abc import Callable, Iterator
 from typing import Any
 
-from babybench_core import _native
+from .. import _native
 
 __all__ = ["Handle", "launch", "launch_passive"]
 
@@ -17,7 +17,7 @@ def _core(model: Any, data: Any) -> Any:
     if sync is None or data.model is not model:
         raise NotImplementedError(
             "mujoco.viewer shows environments here: give it env.model and env.data of one environment. For other models "
-            "install mujoco (pip install mujoco), or draw pictures with mujoco.Renderer"
+            "draw pictures with mujoco.Renderer, or install mujoco (pip install mujoco)"
         )
     return sync.core
 

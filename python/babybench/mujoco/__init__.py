@@ -25,7 +25,6 @@ from babybench_core.mujoco import jacobians as _jacobians
 from babybench_core.mujoco import maths as _maths
 from babybench_core.mujoco import more_enums as _more_enums
 from babybench_core.mujoco import rays as _rays
-from babybench_core.mujoco import rollout
 from babybench_core.mujoco import spec as _spec
 from babybench_core.mujoco import vectors as _vectors
 from babybench_core.mujoco.constants import *  # noqa: F403
@@ -43,6 +42,8 @@ from babybench_core.mujoco.renderer import MjvCamera, Renderer, mjv_defaultCamer
 from babybench_core.mujoco.scene_option import MjvOption, mjv_defaultOption
 from babybench_core.mujoco.spec import *  # noqa: F403
 from babybench_core.mujoco.vectors import *  # noqa: F403
+
+from . import rollout, viewer
 
 stands_in = True
 """Tells this module from MuJoCo's own."""
@@ -79,6 +80,7 @@ __all__ = [
     "rollout",
     "stands_in",
     "uninstall",
+    "viewer",
 ]
 __all__ += (
     _constants.__all__
