@@ -328,6 +328,10 @@ class Env:
         and ``point`` (world, N and m), ``force_body`` and ``point_body`` (frame of the body).
         """
     @property
+    def reflexes(self) -> list[str]:
+        """Names of the reflexes that act on MIMo, in the order of the entry ``reflexes`` of the observation."""
+
+    @property
     def proprioception_entries(self) -> list[tuple[str, str, int, int]]:
         """Component, name, first and last plus one place of each entry of the observation."""
 

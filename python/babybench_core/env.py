@@ -40,6 +40,7 @@ class Env(SceneAccess, gymnasium.Env[Observation, npt.NDArray[Any]]):
     | `eye_left`      | uint8   | what the left eye sees, (height, width, 3), red, green, blue, from the top           |
     | `eye_right`     | uint8   | what the right eye sees                                                              |
     | `vestibular`    | float64 | linear acceleration (m/s^2, 3) and angular velocity (rad/s, 3) of the head           |
+    | `reflexes`      | float64 | how strongly each of ``env.reflexes`` acts, 0 to 1                                 |
     | `achieved_goal` | float64 | of tasks with goals: what is achieved                                                |
     | `desired_goal`  | float64 | what is to be achieved                                                               |
 
@@ -49,7 +50,8 @@ class Env(SceneAccess, gymnasium.Env[Observation, npt.NDArray[Any]]):
     the palm has touched in this episode) with their names in ``right_hand_parts`` and ``left_hand_parts``; or how many
     steps each hand was in the view of each eye (``right_eye_left_hand``, ...), and ``gaze_angles`` (rad). That of a task has
     its name (``task``), ``is_success``, ``is_failure``, the ``return`` of the episode so far and ``reward_terms``, what the
-    reward depends on beside goals: :meth:`compute_reward` takes them.
+    reward depends on beside goals: :meth:`compute_reward` takes them. With ``reflexes`` it has ``reflex_NAME``, the share of the
+    episode's physics steps in which that reflex acted.
 
     Example:
         >>> import babybench
@@ -294,6 +296,11 @@ class Env(SceneAccess, gymnasium.Env[Observation, npt.NDArray[Any]]):
             ValueError: Touch is off.
         """
         return Touch(self._core)
+
+    @property
+    def reflexes(self) -> list[str]:
+        """Names of the reflexes that act on MIMo, in the order of the entry ``reflexes`` of the observation."""
+        return list(self._core.reflexes)
 
     def set_age(self, age: Optional[float]) -> None:
         """Lets MIMo grow to an age in months, 0 to 24, or back to MIMo's own proportions (``None``); the next call is a reset.

@@ -181,7 +181,11 @@ pub fn config_keys(py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {
         entry.set_item("section", key.section)?;
         entry.set_item("expected", key.kind.expected())?;
         entry.set_item("doc", key.doc)?;
-        if let KeyKind::Choice(names) | KeyKind::ChoiceOrFile { names, .. } | KeyKind::List(names) = key.kind {
+        if let KeyKind::Choice(names)
+        | KeyKind::ChoiceOrFile { names, .. }
+        | KeyKind::List(names)
+        | KeyKind::NoneOrList(names) = key.kind
+        {
             entry.set_item("choices", names)?;
         }
         keys.set_item(key.name, entry)?;

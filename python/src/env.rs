@@ -515,6 +515,12 @@ impl Env {
     }
 
     #[getter]
+    fn reflexes(&self) -> PyResult<Vec<&'static str>> {
+        let mut guard = self.guard()?;
+        Ok(guard.open()?.env.reflexes().map(|reflex| reflex.name()).collect())
+    }
+
+    #[getter]
     fn proprioception_entries(&self) -> PyResult<Vec<(&'static str, String, usize, usize)>> {
         let mut guard = self.guard()?;
         let env = &guard.open()?.env;

@@ -113,6 +113,13 @@ pub fn infos_dict<'py>(py: Python<'py>, infos: Infos<'_>) -> PyResult<Bound<'py,
     if let Some(ages) = infos.vision_age {
         dict.set_item(intern!(py, "vision_age"), PyArray1::from_slice(py, ages))?;
     }
+    if let Some(shares) = infos.reflexes {
+        let columns = infos.reflex_names.len();
+        for (column, reflex) in infos.reflex_names.iter().enumerate() {
+            let column = shares.iter().skip(column).step_by(columns);
+            dict.set_item(format!("reflex_{reflex}"), PyArray1::from_iter(py, column.copied()))?;
+        }
+    }
     if let (Some(outcomes), Some(terms)) = (infos.outcomes, infos.reward_terms) {
         let success = PyArray1::from_iter(py, outcomes.iter().map(|o| o.is_success));
         let failure = PyArray1::from_iter(py, outcomes.iter().map(|o| o.is_failure));

@@ -16,6 +16,16 @@ pub enum ActuationError {
         /// The expected value.
         needs: &'static str,
     },
+    /// MIMo lacks what a reflex needs.
+    #[error(
+        "the reflex {reflex} needs {missing}, which this MIMo does not have: leave it out of `reflexes`, or keep the part (`act_...`)"
+    )]
+    Reflex {
+        /// The reflex.
+        reflex: &'static str,
+        /// What is missing.
+        missing: String,
+    },
     /// A number of the actuator or of its joint is not allowed.
     #[error("actuator {actuator:?}: {what} is {value}, but must be {allowed}")]
     Parameter {

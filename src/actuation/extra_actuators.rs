@@ -1,6 +1,6 @@
 //! Actuators of bodies that are not MIMo's.
 
-use super::{Actuation, named, set_controls};
+use super::{Actuation, MotorCommand, named, set_controls};
 use crate::model::Model;
 use crate::physics::State;
 use crate::spaces::BoxSpace;
@@ -97,6 +97,16 @@ impl Actuation for WithExtraActuators {
 
     fn substep(&self, model: &Model, state: &mut State) {
         self.mimo.substep(model, state);
+    }
+
+    fn drive(&self, model: &Model, state: &mut State, action: &[f32], commands: &[MotorCommand]) {
+        let (own, rest) = action.split_at(self.own().min(action.len()));
+        self.mimo.drive(model, state, own, commands);
+        set_controls(&mut state.ctrl, &self.space, &self.extra, self.own(), rest);
+    }
+
+    fn strength(&self, model: &Model) -> Vec<[f64; 2]> {
+        self.mimo.strength(model)
     }
 
     fn reset(&self, model: &Model, state: &mut State) {

@@ -17,6 +17,7 @@ mod error;
 mod extra_actuators;
 mod muscle;
 mod positional;
+mod reflex;
 mod spring_damper;
 
 use crate::config::{ActuationModel, Config};
@@ -27,6 +28,8 @@ use crate::spaces::BoxSpace;
 pub use error::ActuationError;
 pub use muscle::{MuscleModel, MuscleParams};
 pub use positional::PositionalModel;
+pub use reflex::MotorCommand;
+pub(crate) use reflex::{ReflexTables, Reflexes};
 pub use spring_damper::SpringDamperModel;
 
 /// Turns actions into controls of a scene's actuators. The functions depend on model and state alone.
@@ -55,6 +58,13 @@ pub trait Actuation: Send + Sync {
 
     /// Updates the actuators before each physics step of an environment step but the first.
     fn substep(&self, model: &Model, state: &mut State);
+
+    /// Drives MIMo's actuators for a physics step by an action of the length of the space and by what reflexes command, one command for
+    /// each of [`Actuation::actuators`]. With reflexes it takes the place of [`Actuation::set_action`] and [`Actuation::substep`].
+    fn drive(&self, model: &Model, state: &mut State, action: &[f32], commands: &[MotorCommand]);
+
+    /// Returns the greatest torque of each of [`Actuation::actuators`] on its joint, in the negative and in the positive direction, N m.
+    fn strength(&self, model: &Model) -> Vec<[f64; 2]>;
 
     /// Resets the actuators; called at each reset of the scene.
     fn reset(&self, model: &Model, state: &mut State);

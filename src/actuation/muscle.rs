@@ -2,7 +2,7 @@
 
 mod params;
 
-use super::{Actuation, ActuationError, named};
+use super::{Actuation, ActuationError, MotorCommand, named};
 use crate::config::Compat;
 use crate::mimo::{MimoBodies, MimoJoints};
 use crate::model::Model;
@@ -174,6 +174,29 @@ impl Actuation for MuscleModel {
 
     fn substep(&self, model: &Model, state: &mut State) {
         self.update(model, state);
+    }
+
+    fn drive(&self, model: &Model, state: &mut State, action: &[f32], commands: &[MotorCommand]) {
+        self.make_room(state);
+        let n = self.params.len();
+        let gain = TAU / model.opt.timestep;
+        for (k, (command, joint)) in commands.iter().zip(&self.joints).enumerate() {
+            let (angle, velocity) = (state.qpos[joint.qposadr], state.qvel[joint.dofadr]);
+            let reflex = self.params[k].activities(angle, velocity, command);
+            for (at, reflex) in [k, n + k].into_iter().zip(reflex) {
+                let own = f64::from(self.space.clip(at, action[at])) + reflex;
+                // where the action is suppressed, the excitation that makes the activation right at once
+                let exact = state.act[at] + gain * (reflex - state.act[at]);
+                let target = own * (1.0 - command.suppress) + exact * command.suppress;
+                state.actuator_target[at] = target.clamp(0.0, 1.0);
+            }
+        }
+        self.update(model, state);
+    }
+
+    fn strength(&self, _model: &Model) -> Vec<[f64; 2]> {
+        let torques = |p: &MuscleParams| [0, 1].map(|muscle| p.moment[muscle].abs() * p.fmax[muscle]);
+        self.params.iter().map(torques).collect()
     }
 
     fn reset(&self, _model: &Model, state: &mut State) {

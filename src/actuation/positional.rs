@@ -1,6 +1,6 @@
 //! Position servos: the action is the desired angle.
 
-use super::{Actuation, ActuationError, clear_muscles, named};
+use super::{Actuation, ActuationError, MotorCommand, clear_muscles, named};
 use crate::config::Compat;
 use crate::mimo::MimoBodies;
 use crate::model::{BiasType, DynType, EqualityKind, GainType, Model};
@@ -87,6 +87,11 @@ impl PositionalModel {
         for (&i, &target) in self.actuators.iter().zip(&state.actuator_target) {
             state.ctrl[i] = target;
         }
+        self.hold(state);
+    }
+
+    /// Sets the controls of held joints to 0.
+    fn hold(&self, state: &mut State) {
         for hold in &self.holds {
             if state.params.eq_active[hold.equality] {
                 state.ctrl[hold.actuator] = 0.0;
@@ -136,6 +141,35 @@ impl Actuation for PositionalModel {
         if self.compat == Compat::Reference {
             self.target_zero(state);
         }
+    }
+
+    /// The targets that are observed are those of the action; the servos get angles at which they pull with the reflexes' torques, too.
+    fn drive(&self, model: &Model, state: &mut State, action: &[f32], commands: &[MotorCommand]) {
+        self.set_action(model, state, action);
+        for (&i, command) in self.actuators.iter().zip(commands) {
+            let gear = state.params.actuator_gear[i];
+            let stiffness = model.actuator_gainprm[i][0] * gear;
+            if (command.torque, command.suppress) == (0.0, 0.0) || stiffness == 0.0 {
+                continue;
+            }
+            let Some(joint) = model.actuator_joint(i) else { continue };
+            // a servo pulls to its control over the gear
+            let here = gear * state.qpos[model.jnt_qposadr[joint]];
+            state.ctrl[i] = here + (state.ctrl[i] - here) * (1.0 - command.suppress) + command.torque / stiffness;
+        }
+        self.hold(state);
+    }
+
+    fn strength(&self, model: &Model) -> Vec<[f64; 2]> {
+        let torques = |&i: &usize| {
+            if model.actuator_forcelimited[i] {
+                return model.actuator_forcerange[i].map(|force| (force * model.actuator_gear[i]).abs());
+            }
+            // without a limit a servo pulls at most from one end of its range to the other
+            let [low, high] = model.actuator_joint(i).map_or([0.0; 2], |j| model.jnt_range[j]);
+            [model.actuator_gainprm[i][0] * model.actuator_gear[i] * (high - low); 2]
+        };
+        self.actuators.iter().map(torques).collect()
     }
 
     fn reset(&self, _model: &Model, state: &mut State) {

@@ -1,6 +1,6 @@
 //! Torque motors that respond at once; springs and dampers are in the joints.
 
-use super::{Actuation, clear_muscles, named};
+use super::{Actuation, MotorCommand, clear_muscles, named};
 use crate::config::Compat;
 use crate::mimo::MimoBodies;
 use crate::model::Model;
@@ -73,6 +73,28 @@ impl Actuation for SpringDamperModel {
     }
 
     fn substep(&self, _model: &Model, _state: &mut State) {}
+
+    fn drive(&self, _model: &Model, state: &mut State, action: &[f32], commands: &[MotorCommand]) {
+        for (k, (&i, command)) in self.actuators.iter().zip(commands).enumerate() {
+            let own = f64::from(self.space.clip(k, action[k])) * (1.0 - command.suppress);
+            let gear = state.params.actuator_gear[i];
+            let reflex = if gear == 0.0 { 0.0 } else { command.torque / gear };
+            let [low, high] = [self.space.low()[k], self.space.high()[k]].map(f64::from);
+            state.ctrl[i] = (own + reflex).max(low).min(high);
+        }
+    }
+
+    fn strength(&self, model: &Model) -> Vec<[f64; 2]> {
+        let torques = |&i: &usize| {
+            let [low, high] = if model.actuator_forcelimited[i] {
+                model.actuator_forcerange[i]
+            } else {
+                [-1.0, 1.0]
+            };
+            [-low.max(-1.0), high.min(1.0)].map(|share| (share * model.actuator_gear[i]).max(0.0))
+        };
+        self.actuators.iter().map(torques).collect()
+    }
 
     fn reset(&self, _model: &Model, state: &mut State) {
         state.act.fill(0.0);

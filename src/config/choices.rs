@@ -267,3 +267,29 @@ choices! {
         Scared = "scared",
     }
 }
+
+choices! {
+    /// A reflex of infants (`reflexes`).
+    Reflex {
+        /// A drop of the head spreads the arms, then closes them.
+        #[default]
+        Moro = "moro",
+        /// A turned head stretches arm and leg of the face's side and bends those of the other (the asymmetric tonic neck reflex).
+        Atnr = "atnr",
+        /// The eyes turn against the head (the vestibulo-ocular reflex).
+        Vor = "vor",
+        /// A muscle that is stretched pulls back.
+        Stretch = "stretch",
+    }
+}
+
+choices! {
+    /// What the vestibulo-ocular reflex does with the action of the eyes (`reflex_vor`).
+    ReflexVor {
+        /// The eyes ignore their action.
+        #[default]
+        Replace = "replace",
+        /// The action is added.
+        Add = "add",
+    }
+}

@@ -2,8 +2,8 @@
 
 use super::error::Conflict;
 use super::{
-    ActuationModel, Behavior, Compat, Config, DelayUnit, Delays, KeyValue, StrengthModel, TouchFunction, VisionOutput,
-    defaults, latencies, table,
+    ActuationModel, Behavior, Compat, Config, DelayUnit, Delays, KeyValue, Reflex, StrengthModel, TouchFunction,
+    VisionOutput, defaults, latencies, table,
 };
 
 /// Greatest delay, steps of the environment.
@@ -27,7 +27,7 @@ const SIDES: [&str; 7] = [
 ];
 
 /// Keys of MIMo's body and motors that the Python code of BabyBench does not have.
-const BODY: [&str; 4] = ["strength", "springs", "proportions", "noise_motor_color"];
+const BODY: [&str; 5] = ["strength", "springs", "proportions", "noise_motor_color", "reflexes"];
 
 /// Keys that shape a sense, and what to do when it is off.
 struct SenseKeys {
@@ -127,6 +127,7 @@ impl Config {
     pub(super) fn conflict(&self) -> Option<Conflict> {
         self.unused()
             .or_else(|| self.impossible_delay())
+            .or_else(|| self.impossible_reflex())
             .or_else(|| defaults::conflict(self))
             .or_else(|| self.unlike_reference())
     }
@@ -170,6 +171,40 @@ impl Config {
             Compat::Reference => return self.body_unlike_reference().or_else(|| self.eyes_unlike_reference()),
         };
         Some((key, value, reason.to_string()))
+    }
+
+    /// Returns the first key about reflexes that has no meaning beside the others.
+    fn impossible_reflex(&self) -> Option<Conflict> {
+        let set = self.reflexes.set;
+        let refuse = |key: &super::Key, reason: &str| Some((key.name, key.value(self).to_yaml(), reason.to_string()));
+        if set.is_mixed() {
+            let key = Self::keys().iter().find(|key| key.name == "reflexes")?;
+            let reason = "`by_age` is all reflexes of MIMo's age; use it alone, or list names";
+            return refuse(key, reason);
+        }
+        let changed = |key: &&super::Key| key.value(self) != key.default_value();
+        let mut keys = Self::keys()
+            .iter()
+            .filter(|key| key.name.starts_with("reflex_"))
+            .filter(changed);
+        keys.find_map(|key| {
+            let about = key
+                .name
+                .strip_prefix("reflex_gain_")
+                .or_else(|| key.name.strip_prefix("reflex_delay_"));
+            let own = match about {
+                Some(name) => Reflex::from_name(name),
+                None => (key.name == "reflex_vor").then_some(Reflex::Vor),
+            };
+            match own {
+                Some(reflex) if !set.may_have(reflex) => {
+                    let reason = format!("that reflex is off; add {reflex} to `reflexes`, or leave this key out");
+                    refuse(key, &reason)
+                }
+                None if set.is_empty() => refuse(key, "it shapes reflexes, which are off; set `reflexes`"),
+                _ => None,
+            }
+        })
     }
 
     /// Returns the first value of the body that the Python code that `compat: reference` follows cannot have.

@@ -1,11 +1,12 @@
 //! Keys, and the macro that reads their table.
 
 use super::choices::{
-    ActuationModel, Behavior, Compat, DelayUnit, EngineKind, FacialExpression, Learner, Limb, Proportions,
+    ActuationModel, Behavior, Compat, DelayUnit, EngineKind, FacialExpression, Learner, Limb, Proportions, ReflexVor,
     RendererKind, SpringModel, StartingPosition, StrengthModel, TouchFunction, TouchResponse, VisionOutput,
 };
 use super::kinds::{KeyKind, KeyValue};
 use super::outputs::VisionOutputs;
+use super::reflexes::ReflexSet;
 use super::scene::Scene;
 use super::table::{Config, KEYS};
 
@@ -52,6 +53,7 @@ field! {
     Compat, Choice, v => Self::from_name(v), |f| f.name();
     EngineKind, Choice, v => Self::from_name(v), |f| f.name();
     RendererKind, Choice, v => Self::from_name(v), |f| f.name();
+    ReflexVor, Choice, v => Self::from_name(v), |f| f.name();
     DelayUnit, Choice, v => Self::from_name(v), |f| f.name();
     VisionOutputs, List, v => Self::from_names(v), |f| f.iter().map(VisionOutput::name).collect();
 }
@@ -70,6 +72,23 @@ impl ConfigField for Scene {
         match value {
             KeyValue::Choice(name) => Self::from_name(name),
             KeyValue::Text(path) => Some(Self::File(path.clone())),
+            _ => None,
+        }
+    }
+}
+
+impl ConfigField for ReflexSet {
+    fn to_value(&self) -> KeyValue {
+        if self.is_empty() {
+            KeyValue::None
+        } else {
+            KeyValue::List(self.names())
+        }
+    }
+    fn from_value(value: &KeyValue) -> Option<Self> {
+        match value {
+            KeyValue::None => Some(Self::default()),
+            KeyValue::List(names) => Self::from_names(names),
             _ => None,
         }
     }

@@ -89,6 +89,8 @@ pub enum KeyKind {
     },
     /// A list of one or more of the given names, each once.
     List(&'static [&'static str]),
+    /// None, one of the given names, or a list of them, each once.
+    NoneOrList(&'static [&'static str]),
     /// Text of at least one character, without control characters.
     Text,
     /// Text of any number of lines, or of none, up to 1 MiB.
@@ -123,6 +125,9 @@ impl KeyKind {
                 )
             }
             Self::List(names) => format!("a list in brackets of one or more of {}, each once", names.join(", ")),
+            Self::NoneOrList(names) => {
+                format!("none, or a list in brackets of some of {}, each once", names.join(", "))
+            }
             Self::Document => "text of up to 1 MiB, of any number of lines".to_string(),
             Self::Text => {
                 "text, at least one character and no control characters (in quotes if it looks like a number, a \
@@ -134,7 +139,10 @@ impl KeyKind {
 
     /// Returns whether a key may have no value.
     pub(super) fn allows_none(&self) -> bool {
-        matches!(self, Self::NoneOr { .. } | Self::NoneOrWhole { .. })
+        matches!(
+            self,
+            Self::NoneOr { .. } | Self::NoneOrWhole { .. } | Self::NoneOrList(_)
+        )
     }
 
     /// Parses a YAML scalar. `plain` is false for quoted text, which is always text.
@@ -157,6 +165,7 @@ impl KeyKind {
             }
             Self::Number { .. } | Self::NoneOr { .. } | Self::NoneOrWhole { .. } => return Err(ValueFault::WrongType),
             Self::Choice(names) => KeyValue::Choice(named(text, names)?),
+            Self::NoneOrList(names) => KeyValue::List(vec![named(text, names)?]),
             // by the ending alone: whether the file exists is known when the scene is made, with the caller's assets
             Self::ChoiceOrFile { ending, .. } if text.ends_with(ending) => KeyValue::Text(text.to_string()),
             Self::ChoiceOrFile { names, .. } => KeyValue::Choice(named(text, names)?),
@@ -173,7 +182,7 @@ impl KeyKind {
 
     /// Parses the next name of a list, after those in `list`.
     pub(super) fn parse_item(&self, text: &str, list: &mut Vec<&'static str>) -> Result<(), ValueFault> {
-        let Self::List(names) = self else {
+        let (Self::List(names) | Self::NoneOrList(names)) = self else {
             return Err(ValueFault::WrongType);
         };
         let name = named(text, names)?;
@@ -195,12 +204,12 @@ impl KeyKind {
             (Self::ZeroOrAtLeast(least), KeyValue::Number(number)) => {
                 number.is_finite() && (*number == 0.0 || number >= least)
             }
-            (Self::NoneOr { .. } | Self::NoneOrWhole { .. }, KeyValue::None) => true,
+            (Self::NoneOr { .. } | Self::NoneOrWhole { .. } | Self::NoneOrList(_), KeyValue::None) => true,
             (Self::Number { min, max } | Self::NoneOr { min, max }, KeyValue::Number(number)) => {
                 (min..=max).contains(&number)
             }
             (Self::Choice(names), KeyValue::Choice(name)) => names.contains(name),
-            (Self::List(names), KeyValue::List(list)) => {
+            (Self::List(names) | Self::NoneOrList(names), KeyValue::List(list)) => {
                 let once = |(at, name): (usize, &&str)| names.contains(name) && !list[..at].contains(name);
                 !list.is_empty() && list.iter().enumerate().all(once)
             }

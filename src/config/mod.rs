@@ -31,6 +31,7 @@ pub(crate) mod latencies;
 mod outputs;
 mod parts;
 mod reader;
+mod reflexes;
 mod scene;
 mod senses;
 #[cfg(feature = "eval")]
@@ -42,8 +43,8 @@ mod yaml;
 mod tests;
 
 pub use choices::{
-    ActuationModel, Behavior, Compat, DelayUnit, EngineKind, FacialExpression, Learner, Limb, Proportions,
-    RendererKind, SpringModel, StartingPosition, StrengthModel, TouchFunction, TouchResponse, VisionOutput,
+    ActuationModel, Behavior, Compat, DelayUnit, EngineKind, FacialExpression, Learner, Limb, Proportions, Reflex,
+    ReflexVor, RendererKind, SpringModel, StartingPosition, StrengthModel, TouchFunction, TouchResponse, VisionOutput,
 };
 pub use error::{ConfigError, Location};
 pub use examples::Example;
@@ -52,11 +53,12 @@ pub use kinds::{KeyKind, KeyValue};
 pub use outputs::VisionOutputs;
 pub use parts::{BodyParts, Part};
 pub use reader::ConfigReader;
+pub use reflexes::ReflexSet;
 pub use scene::Scene;
 pub use table::Config;
 pub use table::{
     CatchOptions, Delays, EyeOptions, MAX_AGE, Measurements, MobileOptions, NoiseLevels, PainOptions, PlayOptions,
-    RollOverOptions, StrengthFactors,
+    ReflexDelays, ReflexGains, ReflexOptions, RollOverOptions, StrengthFactors,
 };
 
 use std::path::Path;
@@ -89,7 +91,9 @@ impl Config {
                 out.push_str(&format!("\n# --- {section} ---\n"));
             }
             let options = match key.kind {
-                KeyKind::Choice(names) | KeyKind::List(names) => format!(" Options: {}.", names.join(", ")),
+                KeyKind::Choice(names) | KeyKind::List(names) | KeyKind::NoneOrList(names) => {
+                    format!(" Options: {}.", names.join(", "))
+                }
                 KeyKind::ChoiceOrFile { .. } => format!(" Options: {}.", key.kind.expected()),
                 _ => String::new(),
             };

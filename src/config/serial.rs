@@ -41,6 +41,7 @@ impl Serialize for Config {
                 (KeyKind::NoneOrWhole { .. }, KeyValue::Whole(number)) => {
                     map.serialize_entry(key.name, &Some(number))?;
                 }
+                (KeyKind::NoneOrList(_), KeyValue::List(names)) => map.serialize_entry(key.name, &Some(names))?,
                 (_, value) => map.serialize_entry(key.name, &value)?,
             }
         }
@@ -160,7 +161,9 @@ impl<'de> DeserializeSeed<'de> for ValueSeed {
             KeyKind::Bool => deserializer.deserialize_bool(self),
             KeyKind::Whole { .. } => deserializer.deserialize_u64(self),
             KeyKind::ZeroOrAtLeast(_) | KeyKind::Number { .. } => deserializer.deserialize_f64(self),
-            KeyKind::NoneOr { .. } | KeyKind::NoneOrWhole { .. } => deserializer.deserialize_option(self),
+            KeyKind::NoneOr { .. } | KeyKind::NoneOrWhole { .. } | KeyKind::NoneOrList(_) => {
+                deserializer.deserialize_option(self)
+            }
             KeyKind::Choice(_) | KeyKind::ChoiceOrFile { .. } | KeyKind::Text | KeyKind::Document => {
                 deserializer.deserialize_str(self)
             }
@@ -208,12 +211,14 @@ impl<'de> Visitor<'de> for ValueSeed {
     fn visit_str<E: serde::de::Error>(self, text: &str) -> Result<KeyValue, E> {
         match self.key.kind {
             kind if kind.allows_none() && text == KeyValue::None.to_yaml() => Ok(KeyValue::None),
-            KeyKind::Choice(_) | KeyKind::ChoiceOrFile { .. } | KeyKind::Text | KeyKind::Document => {
-                match self.key.kind.parse(text, false) {
-                    Ok(value) => Ok(value),
-                    Err(misfit) => Err(self.refusal(misfit, error::shown(text))),
-                }
-            }
+            KeyKind::NoneOrList(_)
+            | KeyKind::Choice(_)
+            | KeyKind::ChoiceOrFile { .. }
+            | KeyKind::Text
+            | KeyKind::Document => match self.key.kind.parse(text, false) {
+                Ok(value) => Ok(value),
+                Err(misfit) => Err(self.refusal(misfit, error::shown(text))),
+            },
             _ => Err(self.refusal(ValueFault::WrongType, format!("'{}' in quotes", error::shown(text)))),
         }
     }
@@ -233,12 +238,13 @@ impl<'de> Visitor<'de> for ValueSeed {
         // binary formats store whole numbers and others in different ways
         match self.key.kind {
             KeyKind::NoneOrWhole { .. } => deserializer.deserialize_u64(self),
+            KeyKind::NoneOrList(_) => deserializer.deserialize_seq(self),
             _ => deserializer.deserialize_f64(self),
         }
     }
 
     fn visit_seq<A: SeqAccess<'de>>(self, mut list: A) -> Result<KeyValue, A::Error> {
-        if !matches!(self.key.kind, KeyKind::List(_)) {
+        if !matches!(self.key.kind, KeyKind::List(_) | KeyKind::NoneOrList(_)) {
             return Err(self.refusal(ValueFault::WrongType, "a list".to_string()));
         }
         let mut names = Vec::new();

@@ -2,13 +2,14 @@
 //! ranges and documentation all follow from it.
 
 use super::choices::{
-    ActuationModel, Behavior, Compat, DelayUnit, EngineKind, FacialExpression, Learner, Limb, Proportions,
+    ActuationModel, Behavior, Compat, DelayUnit, EngineKind, FacialExpression, Learner, Limb, Proportions, ReflexVor,
     RendererKind, SpringModel, StartingPosition, StrengthModel, TouchFunction, TouchResponse, VisionOutput,
 };
 use super::keys::{ConfigField, Key, config};
 use super::kinds::KeyKind;
 use super::outputs::VisionOutputs;
 use super::parts::BodyParts;
+use super::reflexes::ReflexSet;
 use super::scene::Scene;
 use crate::render::MAX_SIZE;
 
@@ -59,6 +60,9 @@ const PAIN: KeyKind = KeyKind::Number { min: 0.0, max: 1e6 };
 const MOST_PAIN: KeyKind = KeyKind::NoneOr { min: 0.0, max: 1e6 };
 const COLOR: KeyKind = KeyKind::NoneOr { min: 0.0, max: 2.0 };
 const FACTOR: KeyKind = KeyKind::Number { min: 0.0, max: 10.0 };
+const OWN_FACTOR: KeyKind = KeyKind::NoneOr { min: 0.0, max: 10.0 };
+const REFLEX_DELAY: KeyKind = KeyKind::NoneOr { min: 0.0, max: 1000.0 };
+const REFLEXES: KeyKind = KeyKind::NoneOrList(ReflexSet::NAMES);
 const MILLIMETRES: KeyKind = KeyKind::NoneOr { min: 0.1, max: 100.0 };
 
 use KeyKind::{Bool, Choice, Document, List, Text};
@@ -249,6 +253,26 @@ config! {
     }
     "Actuation" {
         act_others: bool = false, Bool, "The last numbers of an action drive actuators of other bodies, which are also observed." + "The observation has their controls and their joints.";
+    }
+    "Reflexes" {
+        @group reflexes: ReflexOptions, "Reflexes (`reflexes`, `reflex_gain` ...).", "Reflexes of infants." {
+            set as reflexes: ReflexSet = ReflexSet::default(), REFLEXES, "MIMo's reflexes.";
+            gain as reflex_gain: f64 = 1.0, FACTOR, "Factor on the gains of all reflexes.";
+            vor as reflex_vor: ReflexVor = ReflexVor::Replace, Choice(ReflexVor::NAMES), "What the reflex vor does with the action of the eyes.";
+            observed as reflex_observed: bool = false, Bool, "How strongly each reflex acts is observed.";
+        }
+        @group reflex_gains: ReflexGains, "Gains of single reflexes (`reflex_gain_vor` ...).", "Gains of single reflexes, in place of those of MIMo's age." {
+            moro as reflex_gain_moro: Option<f64> = None, OWN_FACTOR, "The gain of the Moro reflex, 1 is full; none for that of MIMo's age.";
+            atnr as reflex_gain_atnr: Option<f64> = None, OWN_FACTOR, "The gain of the asymmetric tonic neck reflex, 1 is full; none for that of MIMo's age.";
+            vor as reflex_gain_vor: Option<f64> = None, OWN_FACTOR, "The gain of the vestibulo-ocular reflex, eyes over head; none for that of MIMo's age.";
+            stretch as reflex_gain_stretch: Option<f64> = None, OWN_FACTOR, "The gain of the stretch reflex, 1 is full; none for that of MIMo's age.";
+        }
+        @group reflex_delays: ReflexDelays, "Delays of single reflexes (`reflex_delay_vor` ...).", "Delays of single reflexes, ms, in place of their own." {
+            moro as reflex_delay_moro: Option<f64> = None, REFLEX_DELAY, "The delay of the Moro reflex, ms; none for its own.";
+            atnr as reflex_delay_atnr: Option<f64> = None, REFLEX_DELAY, "The delay of the asymmetric tonic neck reflex, ms; none for its own.";
+            vor as reflex_delay_vor: Option<f64> = None, REFLEX_DELAY, "The delay of the vestibulo-ocular reflex, ms; none for its own.";
+            stretch as reflex_delay_stretch: Option<f64> = None, REFLEX_DELAY, "The delay of the stretch reflex, ms; none for its own.";
+        }
     }
     "Locked joints" {
         @parts lock = BodyParts::all(false), "Parts whose joints are locked (`lock_hands` ...)." {

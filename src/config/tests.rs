@@ -54,7 +54,7 @@ fn defaults_are_those_of_the_api_page() {
                 touch_response=nearest touch_hands=true touch_fingers=true touch_arms=true touch_feet=true \
                 touch_legs=true touch_body=true touch_head=true touch_eyes=false PAIN actuation_model=spring_damper \
                 act_hands=true act_fingers=true act_arms=true act_feet=true act_legs=true act_body=true act_head=true \
-                act_eyes=true act_others=false lock_hands=false lock_fingers=false lock_arms=false lock_feet=false lock_legs=false \
+                act_eyes=true act_others=false REFLEXES lock_hands=false lock_fingers=false lock_arms=false lock_feet=false lock_legs=false \
                 lock_body=false lock_head=false lock_eyes=false";
     let growth = "age=none strength_age=none strength=volume springs=fixed proportions=mimo touch_grows=false \
                   strength_neck=1.0 strength_trunk=1.0 strength_shoulder=1.0 \
@@ -73,11 +73,20 @@ fn defaults_are_those_of_the_api_page() {
                 vision_foveation_left=none vision_foveation_right=none";
     let pain = "touch_pooled=false pain_active=false pain_threshold=20.0 pain_slope=0.1 pain_limit=none \
                 pain_decay_old=0.0 pain_decay_new=1.0";
+    let reflexes = "reflexes=none reflex_gain=1.0 reflex_vor=replace reflex_observed=false reflex_gain_moro=none reflex_gain_atnr=none \
+                    reflex_gain_vor=none reflex_gain_stretch=none reflex_delay_moro=none reflex_delay_atnr=none \
+                    reflex_delay_vor=none reflex_delay_stretch=none";
     let ours: Vec<String> = Config::keys()
         .iter()
         .map(|key| format!("{}={}", key.name, key.default_value().to_yaml()))
         .collect();
-    let sections = [("GROWTH", growth), ("DELAYS", delays), ("EYES", eyes), ("PAIN", pain)];
+    let sections = [
+        ("GROWTH", growth),
+        ("DELAYS", delays),
+        ("EYES", eyes),
+        ("PAIN", pain),
+        ("REFLEXES", reflexes),
+    ];
     let all = sections
         .iter()
         .fold(page.to_string(), |all, (name, keys)| all.replace(name, keys));

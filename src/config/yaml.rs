@@ -166,7 +166,7 @@ impl<'t> YamlReader<'t> {
                     Err(misfit) => Err(refusal(key, misfit, written(&text, plain), self.location(at))),
                 };
             }
-            Event::SequenceStart(_, anchor, tag) if matches!(key.kind, KeyKind::List(_)) => {
+            Event::SequenceStart(_, anchor, tag) if matches!(key.kind, KeyKind::List(_) | KeyKind::NoneOrList(_)) => {
                 self.bare(anchor, tag.is_some(), at)?;
                 return Ok((self.list(key, at)?, at));
             }

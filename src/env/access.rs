@@ -3,7 +3,8 @@
 use std::sync::Arc;
 
 use super::{Blueprint, Env, Goal, Info, Senses, SensesMut};
-use crate::config::Config;
+use crate::actuation::Reflexes;
+use crate::config::{Config, Reflex};
 use crate::model::Model;
 use crate::physics::State;
 use crate::sensors::ObservationEntry;
@@ -13,6 +14,12 @@ impl Env {
     /// Returns the bounds of actions.
     pub fn action_space(&self) -> &BoxSpace {
         self.blueprint.actuation().action_space()
+    }
+
+    /// Returns the reflexes that act on MIMo, in the order of the entry `reflexes` of the observation.
+    pub fn reflexes(&self) -> impl Iterator<Item = Reflex> {
+        let tables = self.blueprint.tables().reflexes.as_ref();
+        tables.into_iter().flat_map(|tables| tables.reflexes())
     }
 
     /// Returns keys, shapes, types and bounds of the observation.
@@ -89,6 +96,7 @@ impl Env {
 
     /// Returns the memory of delays and other transforms, bytes.
     pub(crate) fn transform_memory(&self) -> usize {
-        self.senses.pipeline.memory() + self.action_delay.memory()
+        let reflexes = self.reflexes.as_ref().map_or(0, Reflexes::bytes);
+        self.senses.pipeline.memory() + self.action_delay.memory() + reflexes
     }
 }

@@ -15,7 +15,7 @@ use super::pipeline::effective;
 use super::snapshot::Identity;
 use super::task::{TaskSizes, of_config, rewards};
 use super::{Env, EnvError, Goal, GoalError, Task};
-use crate::actuation::{self, Actuation};
+use crate::actuation::{self, Actuation, ReflexTables, Reflexes};
 use crate::assets::AssetSource;
 use crate::config::{Config, EngineKind, RendererKind};
 use crate::mimo::scene_assets;
@@ -65,6 +65,7 @@ pub(super) struct SharedTables {
     pub actuation: Arc<dyn Actuation>,
     pub proprioception: Arc<Proprioception>,
     pub vestibular: Option<Arc<Vestibular>>,
+    pub reflexes: Option<Arc<ReflexTables>>,
 }
 
 impl std::fmt::Debug for SharedTables {
@@ -77,7 +78,9 @@ impl SharedTables {
     fn new(config: &Config, model: &Model) -> Result<Self, EnvError> {
         let actuation: Arc<dyn Actuation> = actuation::build(model, config)?.into();
         let proprioception = Proprioception::new(model, config, actuation.observation_len());
+        let reflexes = ReflexTables::new(config, model, &*actuation)?.map(Arc::new);
         Ok(Self {
+            reflexes,
             actuation,
             proprioception: proprioception.into(),
             vestibular: config.vestibular_active.then(|| Vestibular::new(model).into()),
@@ -294,6 +297,12 @@ impl Blueprint {
         // shared from the start, because copies into an own allocation would stay unshared
         state.params = self.params.clone();
         state
+    }
+
+    /// Creates the reflexes of a new environment, if it has any.
+    pub(super) fn new_reflexes(&self) -> Option<Reflexes> {
+        let tables = self.tables.reflexes.clone()?;
+        Some(Reflexes::new(tables, self.actuation()))
     }
 
     /// Returns the engines of this blueprint's environments.

@@ -159,8 +159,7 @@ impl<'a> ManualControl<'a> {
         if self.env.physics.check_shape().is_err() {
             return; // the next physics step reports it
         }
-        let scene = self.env.play().scene;
-        scene.actuation.substep(scene.model, scene.state);
+        self.env.play().scene.substep();
     }
 
     /// Advances by one physics step, without sensing.

@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use super::{PerEyeAndHand, PerHand};
+use crate::config::Reflex;
 use crate::model::Model;
 
 /// Additions to the reference's information. The pickles of logs leave them out.
@@ -20,6 +21,24 @@ pub struct InfoDetails {
     /// Both ways to count hands in view, for the behavior `hand_regard`. [`BehaviorInfo`](crate::env::BehaviorInfo) holds one of them, by
     /// [`Compat`](crate::config::Compat).
     pub regards: Option<RegardCounts>,
+    /// How often each reflex acted, with [`reflexes`](crate::Config::reflexes). `None` right after a reset or a restored snapshot.
+    pub reflexes: Option<ReflexShares>,
+}
+
+/// The shares of an episode's physics steps in which each reflex acted with more than a tenth of its strength.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct ReflexShares([Option<f64>; Reflex::ALL.len()]);
+
+impl ReflexShares {
+    /// Creates shares from a function, which returns `None` for reflexes that are off.
+    pub fn from_fn(share: impl Fn(Reflex) -> Option<f64>) -> Self {
+        Self(std::array::from_fn(|k| share(Reflex::ALL[k])))
+    }
+
+    /// Returns the share of a reflex, 0 to 1; `None` if it is off.
+    pub fn get(&self, reflex: Reflex) -> Option<f64> {
+        self.0[reflex as usize]
+    }
 }
 
 /// Steps in which a hand was in the central field of view of an eye, counted in two ways.
@@ -44,6 +63,7 @@ impl InfoDetails {
             parts.each_mut().into_iter().for_each(Vec::clear);
         }
         (self.gaze_angles, self.vision_age, self.regards) = (None, None, None);
+        self.reflexes = None;
     }
 
     /// Updates the names from the geoms that each hand has touched, if the behavior lists them. The lists have grown or been cleared.

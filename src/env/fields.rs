@@ -6,6 +6,7 @@ use super::task::measures_of;
 use super::{
     BehaviorInfo, EYE_HAND_PAIRS, Info, InfoDetails, Measures, Outcome, PerEyeAndHand, PerHand, RegardCounts, TaskInfo,
 };
+use crate::config::Reflex;
 
 /// Keys of the geoms that the palms have touched, right and left.
 const TOUCHES: [&str; 2] = ["right_hand_touches", "left_hand_touches"];
@@ -13,6 +14,8 @@ const TOUCHES: [&str; 2] = ["right_hand_touches", "left_hand_touches"];
 pub(crate) const PARTS: [&str; 2] = ["right_hand_parts", "left_hand_parts"];
 /// Keys of the report of a task with a goal.
 const TASK: [&str; 4] = ["task", "is_success", "is_failure", "return"];
+/// Keys of the shares of steps in which reflexes acted, in the order of [`Reflex::ALL`].
+const REFLEXES: [&str; Reflex::ALL.len()] = ["reflex_moro", "reflex_atnr", "reflex_vor", "reflex_stretch"];
 /// The key of the number of steps.
 pub(crate) const STEPS: &str = "steps";
 
@@ -145,12 +148,17 @@ impl InfoDetails {
                 ("kit_regards", InfoValue::Counts(kit)),
             ]
         });
+        let reflexes = self.reflexes.into_iter().flat_map(|shares| {
+            let each = REFLEXES.into_iter().zip(Reflex::ALL);
+            each.filter_map(move |(key, &reflex)| Some((key, InfoValue::Number(shares.get(reflex)?))))
+        });
         parts
             .into_iter()
             .flatten()
             .chain(angles)
             .chain(age)
             .chain(regards.into_iter().flatten())
+            .chain(reflexes)
     }
 }
 

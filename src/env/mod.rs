@@ -41,7 +41,7 @@ pub use blueprint::{Blueprint, BlueprintOptions};
 pub use by_hand::ManualControl;
 pub use changeable::{CHANGEABLE, ModelChangeError};
 pub use checksum::Checksum;
-pub use details::{InfoDetails, PartNames, RegardCounts};
+pub use details::{InfoDetails, PartNames, ReflexShares, RegardCounts};
 pub use error::EnvError;
 pub use eyes::draw_eyes;
 pub use fields::{InfoField, InfoValue};
@@ -75,6 +75,7 @@ pub use viewer::{ViewFrom, Viewer};
 
 pub(crate) use physics::ScratchUse;
 
+use crate::actuation::Reflexes;
 use crate::config::Config;
 use crate::model::Model;
 use crate::spaces::NumpyRng;
@@ -109,6 +110,7 @@ pub struct Env {
     blueprint: Blueprint,
     physics: Physics,
     action_delay: ActionDelay,
+    reflexes: Option<Reflexes>,
     senses: Senses,
     task: Box<dyn Task>,
     goals: Goals,
@@ -129,6 +131,7 @@ impl Clone for Env {
             blueprint: self.blueprint.clone(),
             physics: self.physics.clone(),
             action_delay: self.action_delay.clone(),
+            reflexes: self.reflexes.clone(),
             senses: self.senses.clone(),
             task: self.task.clone(),
             goals: self.goals.clone(),
@@ -170,6 +173,7 @@ impl Env {
         Ok(Self {
             physics: Physics::new(blueprint.engines().clone(), blueprint.new_state()),
             action_delay: ActionDelay::new(config, actuation.action_space(), blueprint.action_delay()),
+            reflexes: blueprint.new_reflexes(),
             senses: Senses::new(blueprint, blueprint.task_sizes())?,
             goals: Goals::new(blueprint.task_sizes()),
             rng: NumpyRng::seed(config.seed),
@@ -257,6 +261,12 @@ impl Env {
         self.task.inform(TaskEvent::Step(state), &mut self.info);
     }
 
+    /// Records how often each reflex has acted.
+    fn count_reflexes(&mut self) {
+        let reflexes = self.reflexes.as_ref();
+        self.info.details.reflexes = reflexes.map(|r| ReflexShares::from_fn(|reflex| r.share(reflex)));
+    }
+
     /// Records the age of the pictures of the eyes.
     fn date_pictures(&mut self) {
         let age = self.senses.vision_age();
@@ -269,8 +279,14 @@ impl Env {
         // a closure rather than a buffer: the task writes straight into the observation
         let (state, task) = (self.physics.state(), &*self.task);
         let append = |out: &mut [f64]| task.observe(state, out);
-        self.senses
-            .observe(model, state, self.blueprint.actuation(), append, &mut self.rng)
+        self.senses.observe(
+            model,
+            state,
+            self.blueprint.actuation(),
+            append,
+            self.reflexes.as_ref(),
+            &mut self.rng,
+        )
     }
 
     /// Returns the observation of the last reset, step or [`ManualControl::refresh`], all of one moment. After [`Env::restore`] it lacks

@@ -182,6 +182,9 @@ impl ModelMut<'_> {
         change.apply_to(&mut env.physics.state_mut().params, model);
         env.physics.use_engines(env.blueprint.engines());
         env.senses.use_tables(env.blueprint.tables());
+        if let (Some(reflexes), Some(tables)) = (&mut env.reflexes, &env.blueprint.tables().reflexes) {
+            reflexes.use_tables(tables);
+        }
         Ok(())
     }
 

@@ -62,6 +62,7 @@ impl Env {
             info.episode_return += self.episode.reward;
         }
         self.track();
+        self.count_reflexes();
         self.date_pictures();
         let steps = &mut self.episode.steps;
         self.info.steps = match self.blueprint.config().compat {

@@ -7,7 +7,7 @@ use super::clock::Clock;
 use super::pipeline::Pipeline;
 use super::task::TaskSizes;
 use super::{Blueprint, EnvError, Observation, missing_camera};
-use crate::actuation::Actuation;
+use crate::actuation::{Actuation, Reflexes};
 use crate::config::VisionOutput;
 use crate::model::Model;
 use crate::physics::State;
@@ -79,6 +79,7 @@ impl Senses {
         let SharedTables {
             proprioception,
             vestibular,
+            reflexes,
             ..
         } = blueprint.tables().clone();
         let vision = if config.vision_active {
@@ -103,6 +104,7 @@ impl Senses {
             Sense::Proprioception => Some(proprioception.len() + sizes.observation),
             Sense::TouchPooled => pool.as_ref().map(TouchPool::len),
             Sense::Vestibular => vestibular.as_ref().map(|v| v.len()),
+            Sense::Reflexes => reflexes.as_ref().filter(|_| config.reflexes.observed).map(|r| r.len()),
             Sense::Touch | Sense::Pain | Sense::EyeLeft | Sense::EyeRight => None,
         });
         let mut senses = Self {
@@ -235,7 +237,7 @@ impl Senses {
         match sense {
             Sense::EyeLeft | Sense::EyeRight => self.clocks[0].as_ref(),
             Sense::Touch | Sense::TouchPooled | Sense::Pain => self.clocks[1].as_ref(),
-            Sense::Proprioception | Sense::Vestibular => None,
+            Sense::Proprioception | Sense::Vestibular | Sense::Reflexes => None,
         }
     }
 
@@ -277,6 +279,7 @@ impl Senses {
         state: &State,
         actuation: &dyn Actuation,
         append: impl FnOnce(&mut [f64]),
+        reflexes: Option<&Reflexes>,
         rng: &mut NumpyRng,
     ) -> Result<(), EnvError> {
         let proprioception = numbers_of(&mut self.numbers, Sense::Proprioception);
@@ -288,6 +291,9 @@ impl Senses {
         if let Some(v) = &self.vestibular {
             v.observe(state, numbers_of(&mut self.numbers, Sense::Vestibular));
             self.transform(Sense::Vestibular, rng);
+        }
+        if let Some(reflexes) = reflexes {
+            reflexes.observe(numbers_of(&mut self.numbers, Sense::Reflexes));
         }
         self.moment += 1;
         let lazy = self.is_lazy();

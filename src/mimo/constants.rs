@@ -1,11 +1,12 @@
 //! The list of all constants of infants.
 
 use super::growth::constants;
+use super::reflexes;
 use super::sources::{Mark, SourcedConstant};
 use crate::spaces::{INFANT_EXPONENT, INFANT_WEEKS};
 
 impl SourcedConstant {
-    /// Lists all constants of infants' strength, proportions and noise.
+    /// Lists all constants of infants' strength, proportions, noise and reflexes.
     pub fn all() -> Vec<Self> {
         let mut all = constants();
         let single = |name: &str, value: f64, unit| Self {
@@ -20,6 +21,7 @@ impl SourcedConstant {
         all.push(single("exponent of movements, rise", INFANT_EXPONENT[1], "1/week"));
         all.push(single("exponent of movements, first age", INFANT_WEEKS[0], "weeks"));
         all.push(single("exponent of movements, last age", INFANT_WEEKS[1], "weeks"));
+        all.extend(reflexes::constants());
         all
     }
 }

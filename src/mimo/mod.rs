@@ -12,6 +12,7 @@ mod growth;
 mod locks;
 mod parts;
 mod placement;
+pub(crate) mod reflexes;
 mod scene;
 mod sources;
 mod standards;

@@ -49,6 +49,8 @@ senses! {
     EyeLeft = "eye_left", "vision_active";
     /// The right eye.
     EyeRight = "eye_right", "vision_active";
+    /// How strongly reflexes act.
+    Reflexes = "reflexes", "reflex_observed";
 }
 
 impl Sense {
@@ -60,7 +62,7 @@ impl Sense {
         match self {
             Self::Proprioception => config.noise.proprioception,
             Self::Touch => config.noise.touch,
-            Self::TouchPooled | Self::Pain => 0.0,
+            Self::TouchPooled | Self::Pain | Self::Reflexes => 0.0,
             Self::Vestibular => config.noise.vestibular,
             Self::EyeLeft | Self::EyeRight => config.noise.vision,
         }
@@ -74,6 +76,8 @@ impl Sense {
             Self::Touch | Self::TouchPooled | Self::Pain => (delays.touch, latencies::SKIN),
             Self::Vestibular => (delays.vestibular, latencies::BALANCE),
             Self::EyeLeft | Self::EyeRight => (delays.vision, latencies::SIGHT),
+            // he knows what his own motors are told
+            Self::Reflexes => return 0,
         };
         config.sense_delay(own, of_age)
     }
@@ -86,7 +90,7 @@ impl Sense {
     /// Returns the rate of the sense in a configuration, Hz, if it has one.
     pub(crate) fn rate(self, config: &Config) -> Option<f64> {
         match self {
-            Self::Proprioception | Self::Vestibular => None,
+            Self::Proprioception | Self::Vestibular | Self::Reflexes => None,
             Self::Touch | Self::TouchPooled | Self::Pain => config.touch_rate,
             Self::EyeLeft | Self::EyeRight => config.vision_rate,
         }
@@ -130,6 +134,8 @@ macro_rules! observation_entries {
             eye_right_segmentation: i32, IDS, eye(Sense::EyeRight, VisionOutput::Segmentation);
             /// Linear acceleration (m/s^2) and angular velocity (rad/s) of the head, if `vestibular_active`.
             vestibular: f64, ANY, sense(Sense::Vestibular);
+            /// How strongly each reflex acts, 0 to 1, in the order of [`Reflex::ALL`](crate::config::Reflex::ALL), if `reflex_observed`.
+            reflexes: f64, SHARES, sense(Sense::Reflexes);
             /// The achieved goal, if the goals of the task have numbers.
             achieved_goal: f64, ANY, GOAL;
             /// The desired goal, of the same length.
@@ -141,6 +147,7 @@ pub(crate) use observation_entries;
 
 const ANY: [f64; 2] = [f64::NEG_INFINITY, f64::INFINITY];
 const NOT_NEGATIVE: [f64; 2] = [0.0, f64::INFINITY];
+const SHARES: [f64; 2] = [0.0, 1.0];
 const BYTES: [f64; 2] = [0.0, u8::MAX as f64];
 const IDS: [f64; 2] = [-1.0, i32::MAX as f64];
 

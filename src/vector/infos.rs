@@ -1,6 +1,7 @@
 //! Information of all environments as arrays.
 
 use super::layout::RowLayout;
+use crate::config::Reflex;
 use crate::env::{BehaviorInfo, Info, Outcome};
 
 /// Information of all environments, as arrays of rows. Lists in the order of first touch, and names, are in
@@ -19,6 +20,10 @@ pub struct Infos<'a> {
     pub kit_regards: Option<&'a [u64]>,
     /// Age of the pictures of the eyes (N), s, with a [`vision_rate`](crate::Config::vision_rate).
     pub vision_age: Option<&'a [f64]>,
+    /// The reflexes that any environment has.
+    pub reflex_names: &'a [Reflex],
+    /// How often each of them acted, (N, names), 0 to 1: see [`ReflexShares`](crate::env::ReflexShares). `None` without reflexes.
+    pub reflexes: Option<&'a [f64]>,
     /// Success and failure (N) of tasks that report them.
     pub outcomes: Option<&'a [Outcome]>,
     /// Further inputs of the rewards of such tasks besides goals, (N, len): [`Goal::terms`](crate::env::Goal::terms).
@@ -34,13 +39,19 @@ pub(super) struct InfoRows {
     /// The counters by `compat`, the page's, and the kit's.
     regards: [Vec<u64>; 3],
     ages: Vec<f64>,
+    reflex_names: Vec<Reflex>,
+    reflexes: Vec<f64>,
     outcomes: Vec<Outcome>,
     terms: Vec<f64>,
 }
 
 impl InfoRows {
     pub fn new(n: usize, layout: RowLayout) -> Self {
+        let present = Reflex::ALL.iter().filter(|&&reflex| layout.reflexes[reflex as usize]);
+        let reflex_names: Vec<_> = present.copied().collect();
         Self {
+            reflexes: vec![0.0; n * reflex_names.len()],
+            reflex_names,
             layout,
             steps: vec![0; n],
             touches: vec![0; 2 * n * layout.geoms.unwrap_or_default()],
@@ -70,6 +81,14 @@ impl InfoRows {
             // a reset samples
             self.ages[row] = info.details.vision_age.unwrap_or_default();
         }
+        let reflexes = self.reflexes.chunks_exact_mut(self.reflex_names.len().max(1)).nth(row);
+        for (share, &reflex) in reflexes.into_iter().flatten().zip(&self.reflex_names) {
+            *share = info
+                .details
+                .reflexes
+                .and_then(|shares| shares.get(reflex))
+                .unwrap_or_default();
+        }
         if self.layout.regards {
             let both = info.details.regards.unwrap_or_default();
             let counts = info.behavior.regards().unwrap_or_default();
@@ -92,6 +111,8 @@ impl InfoRows {
             page_regards: self.layout.regards.then(|| &self.regards[1][..4 * n]),
             kit_regards: self.layout.regards.then(|| &self.regards[2][..4 * n]),
             vision_age: self.layout.ages.then(|| &self.ages[..n]),
+            reflex_names: &self.reflex_names,
+            reflexes: (!self.reflexes.is_empty()).then(|| &self.reflexes[..n * self.reflex_names.len()]),
             outcomes: self.layout.terms.map(|_| &self.outcomes[..n]),
             reward_terms: self.layout.terms.map(|len| &self.terms[..n * len]),
         }

@@ -1,5 +1,6 @@
 //! The lengths of a vector's rows.
 
+use crate::config::Reflex;
 use crate::env::Env;
 use crate::sensors::ObservationEntry;
 use crate::sensors::transform::Sense;
@@ -18,6 +19,8 @@ pub(super) struct RowLayout {
     pub regards: bool,
     /// Whether the eyes have a rate of their own.
     pub ages: bool,
+    /// Which reflexes any environment has.
+    pub reflexes: [bool; Reflex::ALL.len()],
     /// Number of terms of the rewards, if the tasks report outcomes.
     pub terms: Option<usize>,
 }
@@ -32,6 +35,9 @@ impl RowLayout {
             layout.sensors = env.senses().touch().map_or(0, |touch| touch.layout().len());
             layout.regards |= env.info().behavior.regards().is_some();
             layout.ages |= env.config().vision_active && env.config().vision_rate.is_some();
+            for reflex in env.reflexes() {
+                layout.reflexes[reflex as usize] = true;
+            }
             layout.terms = env.info().behavior.task().is_some().then(|| env.goal().terms.len());
             if env.info().behavior.touches().is_some() {
                 layout.geoms = layout.geoms.max(Some(env.model().ngeom()));

@@ -204,6 +204,7 @@ fn copy_info(from: &Info, to: &mut Info) {
     }
     to.details.gaze_angles = from.details.gaze_angles;
     to.details.vision_age = from.details.vision_age;
+    to.details.reflexes = from.details.reflexes;
     to.details.regards = from.details.regards;
     match &from.details.touched_parts {
         Some(parts) => copy_lists(parts, to.details.touched_parts.get_or_insert_default()),

@@ -69,7 +69,8 @@ pub fn infant() -> Config {
                 delay_motor: 10\nnoise_proprioception: 0.01\nnoise_touch: 0.1\nnoise_vestibular: 0.05\nnoise_vision: 4\n\
                 vision_acuity: true\nvision_acuity_left: 1.5\nvision_foveation: 10\nvision_foveation_right: 2\n\
                 touch_pooled: true\npain_active: true\npain_threshold: 0.5\npain_decay_old: 0.9\npain_limit: 3\n\
-                vision_rate: 90\ntouch_rate: 130\nmax_episode_steps: 20";
+                vision_rate: 90\ntouch_rate: 130\nmax_episode_steps: 20\n\
+                reflexes: by_age\nreflex_observed: true";
     Config::from_yaml(text, "infant").expect("it is valid")
 }
 

@@ -88,6 +88,7 @@ impl Source {
             steps: self.whole(),
             behavior,
             details: InfoDetails {
+                reflexes: None,
                 touched_parts: (self.below(3) > 0).then_some(touched_parts),
                 gaze_angles: (self.below(3) > 0).then_some(gaze_angles),
                 vision_age: (self.below(3) > 0).then(|| self.number()),

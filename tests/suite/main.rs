@@ -35,6 +35,7 @@ mod public_models;
 mod rapier_engine;
 #[cfg(all(feature = "eval", feature = "npz"))]
 mod record;
+mod reflexes;
 #[cfg(all(feature = "eval", feature = "npz"))]
 mod regards;
 mod render;

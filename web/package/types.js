@@ -34,6 +34,7 @@
  * @property {Int32Array | null} eye_left_segmentation ids of geoms, -1 for none, where it has `segmentation`
  * @property {Int32Array | null} eye_right_segmentation
  * @property {Float64Array | null} vestibular acceleration, m/s^2, and angular velocity, rad/s, of the head
+ * @property {Float64Array | null} reflexes how strongly each reflex acts, 0 to 1, in the order of the keys of `Info.reflexes`, with `reflex_observed`
  * @property {Float64Array | null} achieved_goal of a task with goals
  * @property {Float64Array | null} desired_goal
  */
@@ -65,6 +66,7 @@
  * @property {number[] | null} page_regards the same, within 15 degrees of the axis of the eye's camera, as BabyBench's page describes it
  * @property {number[] | null} kit_regards the same, within 15 degrees of the -z axis of the eye's body, as the Python kit computes it
  * @property {number[] | null} gaze_angles between the axis of each eye and each hand, rad
+ * @property {Record<string, number> | null} reflexes share of the episode's physics steps in which each reflex acted, by name
  * @property {number | null} score that the episode would have alone
  * @property {boolean | null} is_success whether a task's goal is reached
  * @property {boolean | null} is_failure whether it is out of reach

@@ -269,6 +269,12 @@ fn write_observation(out: &mut impl Write, env: &Env) -> io::Result<()> {
             range.start, range.end, entry.name
         )?;
     }
+    if env.config().reflexes.observed {
+        writeln!(out, "  components of `reflexes`, 0 to 1")?;
+        for (at, reflex) in env.reflexes().enumerate() {
+            writeln!(out, "    {at:4}..{:4} {reflex}", at + 1)?;
+        }
+    }
     if let Some(v) = env.senses().vestibular() {
         writeln!(out, "  components of `vestibular`")?;
         for (name, range) in v.layout(env.model()) {

@@ -60,6 +60,7 @@ UNITS = {
     "eye_size": "pixel",
     "observation": "rad, rad/s, N m",
     "vestibular": "m/s^2, rad/s",
+    "reflexes": "1",
     "touch_pooled": "N, 1",
     "pain": "1",
     "eye_left_depth": "m",

@@ -1,7 +1,7 @@
 //! Geometry and strength of the muscles of an actuator.
 
-use crate::actuation::ActuationError;
 use crate::actuation::curves::{force_length, force_velocity, passive};
+use crate::actuation::{ActuationError, MotorCommand};
 use crate::model::{BiasType, DynType, GainType, Model};
 
 /// Lengths of a muscle, in optimal lengths, at the two ends of its joint's range.
@@ -119,6 +119,26 @@ impl MuscleParams {
             let speed = force_velocity(velocity * self.moment[k], self.vmax);
             force_length(length[k]) * speed * activity[k] + passive(length[k])
         })
+    }
+
+    /// Returns the activities, 0..1, that add the torque of a reflex at an angle (rad) and velocity (rad/s) of the joint. Where the action
+    /// is suppressed, the torque takes the place of what the stretched muscles pull, too.
+    #[inline]
+    pub(crate) fn activities(&self, angle: f64, velocity: f64, command: &MotorCommand) -> [f64; 2] {
+        let length = self.lengths(angle);
+        let at_rest = self.torque(length.map(passive));
+        let torque = command.torque - command.suppress * at_rest;
+        // muscle 1 pulls to negative angles
+        let muscle = usize::from(torque > 0.0);
+        let speed = force_velocity(velocity * self.moment[muscle], self.vmax);
+        let most = (self.moment[muscle] * self.fmax[muscle] * force_length(length[muscle]) * speed).abs();
+        let mut activities = [0.0; 2];
+        activities[muscle] = if most > 0.0 {
+            (torque.abs() / most).min(1.0)
+        } else {
+            0.0
+        };
+        activities
     }
 
     /// Returns the torque of relative forces on the joint, N m.

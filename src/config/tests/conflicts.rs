@@ -136,3 +136,34 @@ fn what_shapes_a_sense_that_is_off_is_refused() {
         "frame_skip=2 delay_unit=ms delay_motor=2.5",
     );
 }
+
+#[test]
+fn keys_of_reflexes_that_are_off_are_refused() {
+    check(
+        "reflexes: [stretch, vor]\nreflex_vor: add",
+        "reflexes=[vor, stretch] reflex_vor=add",
+    );
+    check("reflexes: by_age\nage: 1", "age=1.0 reflexes=[by_age]");
+    check_error(
+        "reflex_gain: 2",
+        ":1:14: `reflex_gain` is 2.0, but it shapes reflexes, which are off; set `reflexes`",
+    );
+    check_error(
+        "reflexes: moro\nreflex_delay_vor: 20",
+        ":2:19: `reflex_delay_vor` is 20.0, but that reflex is off; add vor to `reflexes`, or leave this key out",
+    );
+    check_error(
+        "reflexes: [moro]\nreflex_vor: add",
+        ":2:13: `reflex_vor` is add, but that reflex is off; add vor to `reflexes`, or leave this key out",
+    );
+    check("reflexes: by_age", "reflexes=[by_age]");
+    check_error(
+        "age: 1\nreflexes: [by_age, moro]",
+        ":2:11: `reflexes` is [moro, by_age], but `by_age` is all reflexes of MIMo's age; use it alone, or list names",
+    );
+    check_error(
+        "compat: reference\ntouch_active: off\nreflexes: [vor]",
+        ":3:11: `reflexes` is [vor], but the Python code that `compat: reference` follows does not have it; leave it out, or set \
+         `compat: api`",
+    );
+}

@@ -97,6 +97,33 @@ fn values(kind: KeyKind) -> Values {
                 bad.map(String::from).to_vec(),
             )
         }
+        KeyKind::NoneOrList(names) => {
+            // the last name stands for a choice of the others
+            let names = &names[..names.len() - 1];
+            let good = names.iter().map(|name| format!("[{name}]"));
+            let good = good.chain([
+                "none".into(),
+                "~".into(),
+                names[0].into(),
+                format!("[{}]", names.join(", ")),
+            ]);
+            (
+                good.collect(),
+                &["[[moro]]", "[{moro: 1}]"],
+                [
+                    "[]",
+                    "[nonsense]",
+                    "nonsense",
+                    "1",
+                    "[1]",
+                    "['']",
+                    "[none]",
+                    "[moro, moro]",
+                ]
+                .map(String::from)
+                .into(),
+            )
+        }
         KeyKind::List(names) => {
             let all = format!("[{}]", names.join(", "));
             let good = names
@@ -179,6 +206,7 @@ fn every_key_takes_what_it_says_and_nothing_else() {
                 ("Growth", _) => "age: 3\n",
                 ("Pain", _) => "pain_active: true\n",
                 (_, "noise_motor_color") => "noise_motor: 0.1\n",
+                ("Reflexes", name) if name != "reflexes" => "reflexes: by_age\n",
                 // only rooms of one's own have a second infant
                 (_, "learner" | "other_age") => "scene: room.xml\n",
                 (_, "delay_by_age") => "age: 3\n",

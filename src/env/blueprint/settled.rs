@@ -86,6 +86,7 @@ impl SettledScene {
             actuation,
             paths: None,
             delay: None,
+            reflexes: None,
             start: [&model.qpos0, &still],
             action: &mut Vec::new(),
         })?;

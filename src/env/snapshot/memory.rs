@@ -16,6 +16,10 @@ impl Env {
         }
         append_part(out, &mut part);
         self.senses.pipeline.save(out);
+        if let Some(reflexes) = &self.reflexes {
+            reflexes.save(&mut part);
+            append_part(out, &mut part);
+        }
         for clock in self.senses.clocks.iter().flatten() {
             clock.save(&mut part);
             append_part(out, &mut part);
@@ -44,8 +48,10 @@ impl Env {
         };
         let senses = &mut self.senses;
         let sensed = self.action_delay.load(motor) && felt && senses.pipeline.load(bytes);
+        let reflexes = self.reflexes.as_mut();
+        let reacts = reflexes.is_none_or(|r| take_part(bytes).is_some_and(|part| r.load(part)));
         let mut clocks = senses.clocks.iter_mut().flatten();
         let timed = clocks.all(|clock| take_part(bytes).is_some_and(|part| clock.load(part)));
-        sensed && timed && bytes.is_empty()
+        sensed && reacts && timed && bytes.is_empty()
     }
 }

@@ -1,7 +1,7 @@
 //! The simulation, for a task to inspect and modify.
 
 use super::Goals;
-use crate::actuation::Actuation;
+use crate::actuation::{Actuation, Reflexes};
 use crate::config::{Compat, Config};
 use crate::env::action_delay::ActionDelay;
 use crate::env::engines::EngineSource;
@@ -11,7 +11,7 @@ use crate::env::{Env, EnvError, Task, check_vector};
 use crate::mimo::CHEST;
 use crate::mimo::{LockTarget, held_posture, lock};
 use crate::model::Model;
-use crate::physics::{Engine, Params, Shared, State};
+use crate::physics::{Engine, EngineError, Params, Shared, State};
 use crate::sensors::Touch;
 use crate::spaces::NumpyRng;
 
@@ -46,6 +46,8 @@ pub struct TaskScene<'a> {
     pub(crate) paths: Option<&'a Paths>,
     /// The delay before the actuators; none while the scene settles.
     pub(crate) delay: Option<&'a mut ActionDelay>,
+    /// Loops between the action and the actuators; none without reflexes and while the scene settles.
+    pub(crate) reflexes: Option<&'a mut Reflexes>,
     /// The start of episodes: positions and velocities.
     pub(crate) start: [&'a [f64]; 2],
     /// A buffer for a random action.
@@ -102,6 +104,7 @@ impl Env {
             actuation: self.blueprint.actuation(),
             paths: self.blueprint.paths(),
             delay: Some(&mut self.action_delay),
+            reflexes: self.reflexes.as_mut(),
             start: [self.blueprint.init_qpos(), self.blueprint.init_qvel()],
             action: &mut self.action,
         };
@@ -156,6 +159,9 @@ impl<'a> TaskScene<'a> {
         if let Some(delay) = &mut self.delay {
             delay.clear();
         }
+        if let Some(reflexes) = &mut self.reflexes {
+            reflexes.clear();
+        }
         if self.engine.reader().check_shape(self.state).is_err() {
             // a program may have cleared a vector; a state to be reset need not be complete
             *self.state = self.engine.reader().new_state();
@@ -204,7 +210,18 @@ impl<'a> TaskScene<'a> {
             (Some(delay), ActionTiming::InReset) => delay.pass_in_reset(action, self.rng),
             (None, _) => action,
         };
-        self.actuation.set_action(self.model, self.state, action);
+        match &mut self.reflexes {
+            // they pass it on with what they add, in each physics step
+            Some(reflexes) => reflexes.take_action(action),
+            None => self.actuation.set_action(self.model, self.state, action),
+        }
+    }
+
+    /// Updates the actuators before each physics step of an environment step but the first.
+    pub(crate) fn substep(&mut self) {
+        if self.reflexes.is_none() {
+            self.actuation.substep(self.model, self.state);
+        }
     }
 
     /// Makes physics steps, before each of which but the first the actuators are updated. Those of MIMo 3 are updated before the first,
@@ -213,7 +230,7 @@ impl<'a> TaskScene<'a> {
         let first = u32::from(self.config.mimo_version < CHEST || self.config.compat == Compat::Api);
         for k in 0..steps {
             if k >= first {
-                self.actuation.substep(self.model, self.state);
+                self.substep();
             }
             self.steps(1)?;
         }
@@ -241,14 +258,23 @@ impl<'a> TaskScene<'a> {
     /// The simulation diverged.
     pub fn steps(&mut self, steps: u32) -> Result<(), EnvError> {
         let (state, paths, last_call) = (&mut *self.state, self.paths, &mut self.last_call);
-        let mut step = |engine: &mut dyn Engine| {
+        let (model, actuation) = (self.model, self.actuation);
+        let (reflexes, rng) = (&mut self.reflexes, &mut *self.rng);
+        let mut step = |engine: &mut dyn Engine| -> Result<(), EngineError> {
+            if let Some(reflexes) = reflexes {
+                reflexes.drive(model, state, actuation, rng);
+            }
             if let Some(paths) = paths {
                 paths.place(state);
             }
             if let Some(last_call) = last_call {
                 last_call.note(EngineCall::Step, state);
             }
-            engine.step(state)
+            engine.step(state)?;
+            if let Some(reflexes) = reflexes {
+                reflexes.sense(model, state);
+            }
+            Ok(())
         };
         // one engine for all steps: its memory is warm in the cache
         let stepped = self.engine.lend(|engine| (0..steps).try_for_each(|_| step(engine)));

@@ -262,6 +262,18 @@ impl Core {
                 "gaze_angles",
                 optional(info.details.gaze_angles, |angles| js::numbers(&angles.to_array())),
             ),
+            (
+                "reflexes",
+                optional(info.details.reflexes, |shares| {
+                    let values = js_sys::Object::new();
+                    for reflex in self.env.reflexes() {
+                        let share = shares.get(reflex).unwrap_or_default();
+                        // setting a property of a fresh object cannot fail
+                        let _ = js_sys::Reflect::set(&values, &reflex.name().into(), &share.into());
+                    }
+                    values.into()
+                }),
+            ),
         ])
     }
 

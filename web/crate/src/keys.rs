@@ -33,7 +33,9 @@ fn describe(key: &Key) -> JsValue {
         KeyKind::Choice(names) => ("choice", list(names.iter().copied()), JsValue::NULL, JsValue::NULL),
         // a path is offered by who hands over its file
         KeyKind::ChoiceOrFile { names, .. } => ("choice", list(names.iter().copied()), JsValue::NULL, JsValue::NULL),
-        KeyKind::List(names) => ("list", list(names.iter().copied()), JsValue::NULL, JsValue::NULL),
+        KeyKind::List(names) | KeyKind::NoneOrList(names) => {
+            ("list", list(names.iter().copied()), JsValue::NULL, JsValue::NULL)
+        }
         KeyKind::Text | KeyKind::Document => ("text", JsValue::NULL, JsValue::NULL, JsValue::NULL),
     };
     object([

@@ -239,7 +239,10 @@ function field(key, changed) {
     return { root: el("div", {}, box, el("p", { className: "soft small" }, key.doc)), show: (v) => (box.input.checked = v === true) };
   }
   if (key.kind === "list") {
-    const chosen = () => boxes.filter((box) => box.input.checked).map((box) => String(box.textContent));
+    const chosen = () => {
+      const names = boxes.filter((box) => box.input.checked).map((box) => String(box.textContent));
+      return names.length === 0 && key.default === null ? null : names;
+    };
     const boxes = (key.options ?? []).map((name) => check(name, () => changed(chosen())));
     const hint = el("p", { className: "soft small" }, capital(key.doc));
     return { root: el("fieldset", { className: "plain" }, el("legend", {}, key.name), ...boxes, hint), show: (v) => boxes.forEach((box) => (box.input.checked = Array.isArray(v) && v.includes(String(box.textContent)))) };

@@ -1,0 +1,140 @@
+//! What the reflexes of all environments of a configuration share.
+
+use super::motors::Motors;
+use super::{ReflexLoop, atnr, moro, stretch, vor};
+use crate::actuation::{Actuation, ActuationError};
+use crate::config::{Config, Reflex};
+use crate::mimo::reflexes;
+use crate::model::Model;
+
+/// A loop with its gain, its delay and its place in the memory.
+pub(super) struct PlacedLoop {
+    pub reflex: Reflex,
+    pub inner: Box<dyn ReflexLoop>,
+    pub gain: f64,
+    /// Physics steps from the one that is sensed to the one that is driven, at least 1.
+    pub delay: usize,
+}
+
+/// The memory of a loop.
+pub(super) struct LoopMemory<'a> {
+    /// How strongly it acts, and the number of steps in which it did.
+    pub counts: &'a mut [f64],
+    /// Stimuli on their way.
+    pub line: &'a mut [f64],
+    pub own: &'a mut [f64],
+}
+
+impl PlacedLoop {
+    /// Returns the length of its memory.
+    pub fn memory(&self) -> usize {
+        2 + self.delay * self.inner.channels() + self.inner.memory()
+    }
+
+    /// Takes its memory from the front of `rest`.
+    pub fn split<'a>(&self, rest: &mut &'a mut [f64]) -> LoopMemory<'a> {
+        let (mine, others) = std::mem::take(rest).split_at_mut(self.memory());
+        *rest = others;
+        let (counts, mine) = mine.split_at_mut(2);
+        let (line, own) = mine.split_at_mut(self.delay * self.inner.channels());
+        LoopMemory { counts, line, own }
+    }
+}
+
+/// The loops of a configuration.
+pub(crate) struct ReflexTables {
+    loops: Vec<PlacedLoop>,
+}
+
+impl ReflexTables {
+    /// Finds what the reflexes of a configuration need in a model; `None` without reflexes.
+    ///
+    /// # Errors
+    /// Motors and sensors that the scene does not have.
+    pub fn new(config: &Config, model: &Model, actuation: &dyn Actuation) -> Result<Option<Self>, ActuationError> {
+        let set = config.reflexes.set;
+        if set.is_empty() {
+            return Ok(None);
+        }
+        let mut loops = Vec::new();
+        for &reflex in Reflex::ALL {
+            match build(reflex, config, &Motors::of(model, actuation, reflex)) {
+                Ok(built) if set.contains(reflex) || set.follows_age() => {
+                    loops.push(place(reflex, built, config, model))
+                }
+                Err(missing) if set.contains(reflex) => return Err(missing),
+                // of those of his age, MIMo has the ones for which he has motors; one that is gone stays with a gain of 0, so that
+                // observations have the same length at every age
+                _ => {}
+            }
+        }
+        Ok(Some(Self { loops }))
+    }
+
+    /// Returns the loops, in the order of [`Reflex::ALL`].
+    pub(super) fn loops(&self) -> &[PlacedLoop] {
+        &self.loops
+    }
+
+    /// Returns how many reflexes there are.
+    pub fn len(&self) -> usize {
+        self.loops.len()
+    }
+
+    /// Returns the reflexes, in order.
+    pub fn reflexes(&self) -> impl Iterator<Item = Reflex> {
+        self.loops.iter().map(|placed| placed.reflex)
+    }
+
+    /// Returns the length of the memory of all loops.
+    pub(super) fn memory(&self) -> usize {
+        1 + self.loops.iter().map(PlacedLoop::memory).sum::<usize>()
+    }
+}
+
+/// A loop, and for how many ms a stimulus waits in it.
+pub(super) struct Built {
+    pub inner: Box<dyn ReflexLoop>,
+    /// Part of the delay that passes in the loop itself, ms.
+    pub inside: f64,
+}
+
+/// The age of the original proportions, months.
+const ORIGINAL: f64 = 18.0;
+
+/// Gives a loop its gain and its delay.
+fn place(reflex: Reflex, built: Built, config: &Config, model: &Model) -> PlacedLoop {
+    let index = reflex as usize;
+    let gains = own_gains(config);
+    // a list names what is wanted at the original proportions, too
+    let age = config.age.or(config.reflexes.set.follows_age().then_some(ORIGINAL));
+    let ms = own_delays(config)[index].unwrap_or(reflexes::of(reflex).delay) - built.inside;
+    PlacedLoop {
+        reflex,
+        inner: built.inner,
+        gain: gains[index].unwrap_or_else(|| reflexes::gain(reflex, age)) * config.reflexes.gain,
+        delay: ((ms / (1000.0 * model.opt.timestep)).round() as usize).max(1),
+    }
+}
+
+/// Returns the gains that a configuration has in place of those of the age, in the order of [`Reflex::ALL`].
+fn own_gains(config: &Config) -> [Option<f64>; Reflex::ALL.len()] {
+    let g = &config.reflex_gains;
+    [g.moro, g.atnr, g.vor, g.stretch]
+}
+
+/// Returns the delays that a configuration has in place of the reflexes' own, ms, in the order of [`Reflex::ALL`].
+fn own_delays(config: &Config) -> [Option<f64>; Reflex::ALL.len()] {
+    let d = &config.reflex_delays;
+    [d.moro, d.atnr, d.vor, d.stretch]
+}
+
+/// Builds the loop of a reflex.
+fn build(reflex: Reflex, config: &Config, motors: &Motors<'_>) -> Result<Built, ActuationError> {
+    match reflex {
+        Reflex::Moro => moro::build(config, motors),
+        Reflex::Atnr => atnr::build(config, motors),
+        Reflex::Vor => vor::build(config, motors),
+        Reflex::Stretch => stretch::build(config, motors),
+    }
+}
