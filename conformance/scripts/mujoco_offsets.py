@@ -14,7 +14,7 @@ from pathlib import Path
 
 HERE = Path(__file__).resolve().parents[1]
 # Elements that MIMo's scenes have none of, and bookkeeping.
-LEFT_OUT = re.compile(r"^n?(flex|tuple|text_|plugin|bvh|tree|fluid|island|wrap_x)")
+LEFT_OUT = re.compile(r"^n?(flexnode|flex_node|tuple|text_|plugin|bvh|tree|fluid|island|wrap_x)")
 KINDS = {"mjtNum": "F64", "int": "I32", "mjtByte": "U8", "float": "F32"}
 OPTION = {
     "mjtNum": "timestep impratio tolerance ls_tolerance noslip_tolerance ccd_tolerance gravity",
@@ -22,7 +22,7 @@ OPTION = {
 }
 CONTACT = {
     "mjtNum": "dist pos frame includemargin friction solref solreffriction solimp",
-    "int": "dim geom exclude efc_address",
+    "int": "dim geom flex elem vert exclude efc_address",
 }
 STATISTIC = {"mjtNum": "meaninertia meanmass meansize extent center"}
 

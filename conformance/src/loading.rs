@@ -5,8 +5,8 @@ use babybench::mjcf_loader::{ErrorKind, LoadError, load_str};
 use babybench::physics::compile;
 
 use crate::arrays::{
-    activations, actuators, derived, derived_unrecorded, looks, names, narrowed, needle, of_meshes, of_skins, options,
-    physical, unrecorded,
+    activations, actuators, derived, derived_unrecorded, looks, names, narrowed, needle, of_flexes, of_meshes,
+    of_skins, options, physical, unrecorded,
 };
 use crate::mujoco::{Mujoco, Simulation};
 
@@ -136,6 +136,7 @@ pub fn distances(model: &babybench::Model, simulation: &Simulation) -> Vec<Dista
         .chain(unrecorded(model))
         .chain(of_meshes(model))
         .chain(of_skins(model))
+        .chain(of_flexes(model))
         .chain(actuators(model))
         .chain(activations(model))
         .chain(looks(model))
@@ -197,8 +198,9 @@ pub fn distances(model: &babybench::Model, simulation: &Simulation) -> Vec<Dista
 /// Describes the first kind of elements whose names differ between the models; `None` if they agree.
 pub fn other_names(model: &babybench::Model, simulation: &Simulation) -> Option<String> {
     let of_skins = ("skin", model.skins.iter().map(|skin| skin.name.clone()).collect());
+    let of_flexes = ("flex", model.flexes.iter().map(|flex| flex.name.clone()).collect());
     let of_keys = ("key", model.keys.iter().map(|key| key.name.clone()).collect());
-    let mut all = names(model).into_iter().chain([of_skins, of_keys]);
+    let mut all = names(model).into_iter().chain([of_skins, of_flexes, of_keys]);
     all.find_map(|(kind, ours)| {
         let theirs = simulation.names(kind);
         (ours != theirs).then(|| format!("names of {kind}: {ours:?} instead of {theirs:?}"))

@@ -159,6 +159,8 @@ fn held(held: &mut EqualityElements) -> Vec<(ElementKind, &mut String)> {
         EqualityElements::Joint(joint) => {
             of(ElementKind::Joint, Some(&mut joint.joint1), joint.joint2.as_mut()).collect()
         }
+        // flexes are not copied
+        EqualityElements::Flex(_) => Vec::new(),
         EqualityElements::Tendon(tendon) => {
             of(ElementKind::Tendon, Some(&mut tendon.tendon1), tendon.tendon2.as_mut()).collect()
         }

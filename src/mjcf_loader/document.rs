@@ -11,6 +11,7 @@ use super::attachment::{AttachedKeyframe, CopyCount, KeyframeValues, MissingRefe
 use super::attribute::Sign::{Any, NonNegative, Positive};
 use super::attribute::{FLAG, INTS, Kind, RANGE, TEXT, int, real, reals, some};
 use super::custom::{Key, Numeric, Text, Tuple};
+use super::flex::{Flex, FlexComp};
 use super::mesh::{HField, Mesh};
 use super::relation::{Equality, Exclude, Pair, Tendon};
 use super::sensor::Sensor;
@@ -256,6 +257,9 @@ pub(super) struct Document {
     pub meshes: Vec<Mesh>,
     pub hfields: Vec<HField>,
     pub skins: Vec<Skin>,
+    pub flexes: Vec<Flex>,
+    /// Flexes that the compiler makes, with their bodies.
+    pub flexcomps: Vec<FlexComp>,
     /// Density by which the inertia of meshes is scaled while their axes are sought, kg/m^3.
     pub mesh_density: f64,
     pub bodies: Vec<Body>,
@@ -305,6 +309,8 @@ impl Document {
             meshes: Vec::new(),
             hfields: Vec::new(),
             skins: Vec::new(),
+            flexes: Vec::new(),
+            flexcomps: Vec::new(),
             mesh_density: Geom::initial().density,
             bodies: vec![world],
             frames: Vec::new(),

@@ -13,10 +13,11 @@ use super::document::{
     Attach, Body, BodyFrame, Camera, Compiler, FreeJoint, Geom, Inertial, Joint, Light, ModelAsset, Replicate, Site,
     Size,
 };
+use super::flex::{Elasticity, Flex, FlexComp, FlexCompEdge, FlexContact, FlexEdge, Pin};
 use super::mesh::{HField, Mesh};
 use super::relation::{
-    Ends, Equality, Exclude, JointEquality, Pair, Pulley, Tendon, TendonEquality, TendonGeom, TendonJoint, TendonLooks,
-    TendonSite, WeldEquality,
+    Ends, Equality, Exclude, FlexEquality, JointEquality, Pair, Pulley, Tendon, TendonEquality, TendonGeom,
+    TendonJoint, TendonLooks, TendonSite, WeldEquality,
 };
 use super::schema::{self, Rule};
 use super::sensor;
@@ -94,7 +95,11 @@ static BONE: Rule = rule("bone", &[Bone::ATTRIBUTES], &[]);
 static SKIN: Rule = rule("skin", &[Skin::ATTRIBUTES], &[&BONE]);
 static MODEL: Rule = rule("model", &[ModelAsset::ATTRIBUTES], &[]);
 static ASSET: Rule = rule("asset", &[], &[&TEXTURE, &MATERIAL, &MESH, &HFIELD, &SKIN, &MODEL]);
-static DEFORMABLE: Rule = rule("deformable", &[], &[&SKIN]);
+static FLEX_CONTACT: Rule = rule("contact", &[FlexContact::ATTRIBUTES], &[]);
+static FLEX_EDGE: Rule = rule("edge", &[FlexEdge::ATTRIBUTES], &[]);
+static ELASTICITY: Rule = rule("elasticity", &[Elasticity::ATTRIBUTES], &[]);
+static FLEX: Rule = rule("flex", &[Flex::ATTRIBUTES], &[&FLEX_CONTACT, &FLEX_EDGE, &ELASTICITY]);
+static DEFORMABLE: Rule = rule("deformable", &[], &[&FLEX, &SKIN]);
 
 static INERTIAL: Rule = rule("inertial", &[Inertial::ATTRIBUTES], &[]);
 static JOINT: Rule = rule("joint", &[CLASS, Joint::ATTRIBUTES], &[]);
@@ -108,6 +113,7 @@ static BODY: Rule = rule(
     &[Body::ATTRIBUTES],
     &[
         &BODY, &INERTIAL, &JOINT, &FREEJOINT, &GEOM, &SITE, &CAMERA, &LIGHT, &FRAME, &REPLICATE, &ATTACH, &COMPOSITE,
+        &FLEXCOMP,
     ],
 );
 /// In the world it can hold the elements of the world only, which the reader checks.
@@ -116,6 +122,7 @@ static FRAME: Rule = rule(
     &[BodyFrame::ATTRIBUTES],
     &[
         &BODY, &INERTIAL, &JOINT, &FREEJOINT, &GEOM, &SITE, &CAMERA, &LIGHT, &FRAME, &REPLICATE, &ATTACH, &COMPOSITE,
+        &FLEXCOMP,
     ],
 );
 static REPLICATE: Rule = rule(
@@ -123,6 +130,7 @@ static REPLICATE: Rule = rule(
     &[Replicate::ATTRIBUTES],
     &[
         &BODY, &INERTIAL, &JOINT, &FREEJOINT, &GEOM, &SITE, &CAMERA, &LIGHT, &FRAME, &REPLICATE, &ATTACH, &COMPOSITE,
+        &FLEXCOMP,
     ],
 );
 static COMPOSITE_JOINT: Rule = rule("joint", &[CompositeJoint::ATTRIBUTES, &[&composite::JOINT]], &[]);
@@ -134,12 +142,19 @@ static COMPOSITE: Rule = rule(
     &[Composite::ATTRIBUTES],
     &[&COMPOSITE_JOINT, &COMPOSITE_GEOM, &COMPOSITE_SITE, &COMPOSITE_SKIN],
 );
+static FLEXCOMP_EDGE: Rule = rule("edge", &[FlexCompEdge::ATTRIBUTES, FlexEdge::ATTRIBUTES], &[]);
+static PIN: Rule = rule("pin", &[Pin::ATTRIBUTES], &[]);
+static FLEXCOMP: Rule = rule(
+    "flexcomp",
+    &[FlexComp::ATTRIBUTES],
+    &[&FLEXCOMP_EDGE, &ELASTICITY, &FLEX_CONTACT, &PIN],
+);
 static ATTACH: Rule = rule("attach", &[Attach::ATTRIBUTES], &[]);
 static WORLDBODY: Rule = rule(
     "worldbody",
     &[],
     &[
-        &BODY, &GEOM, &SITE, &CAMERA, &LIGHT, &FRAME, &REPLICATE, &ATTACH, &COMPOSITE,
+        &BODY, &GEOM, &SITE, &CAMERA, &LIGHT, &FRAME, &REPLICATE, &ATTACH, &COMPOSITE, &FLEXCOMP,
     ],
 );
 
@@ -155,10 +170,17 @@ static EQUALITY_TENDON: Rule = rule(
     &[CLASS, TendonEquality::ATTRIBUTES, Equality::ATTRIBUTES],
     &[],
 );
+static EQUALITY_FLEX: Rule = rule("flex", &[CLASS, FlexEquality::ATTRIBUTES, Equality::ATTRIBUTES], &[]);
 static EQUALITY: Rule = rule(
     "equality",
     &[],
-    &[&EQUALITY_CONNECT, &EQUALITY_JOINT, &EQUALITY_TENDON, &EQUALITY_WELD],
+    &[
+        &EQUALITY_CONNECT,
+        &EQUALITY_JOINT,
+        &EQUALITY_TENDON,
+        &EQUALITY_WELD,
+        &EQUALITY_FLEX,
+    ],
 );
 
 static TENDON_JOINT: Rule = rule("joint", &[TendonJoint::ATTRIBUTES], &[]);

@@ -4,7 +4,7 @@
 //! classes applied and references by name, and the [`Spec`] with MuJoCo 3.3.0's ids and units. Nothing here knows
 //! physics: quantities that need dynamics (`*_invweight0`, statistics, poses of welds at `qpos0`) come with the last step.
 //!
-//! The loader understands MuJoCo 3.3.0's language except for deformable bodies, plugins and a few elements; [`elements`]
+//! The loader understands MuJoCo 3.3.0's language except for plugins and a few elements; [`elements`]
 //! lists all elements and attributes. Everything else is an error that names the place. Ignored are only the
 //! memory reservations in `size`, the matrix format `jacobian`, and the colours and sizes in `visual` of decorations in MuJoCo's viewer:
 //! none changes a compiled array of physics. User data (`user`, `nuser_*`) are kept for programs.
@@ -39,6 +39,7 @@ mod draft;
 pub mod edit;
 mod elements;
 mod error;
+mod flex;
 mod later;
 #[cfg(test)]
 mod limit_tests;

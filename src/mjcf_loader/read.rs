@@ -4,6 +4,7 @@ mod attach;
 mod cable;
 mod cable_skin;
 mod content;
+mod flex;
 mod insertion;
 mod keys;
 mod replicate;
@@ -261,6 +262,7 @@ fn add(e: &Element, section: &str, classes: &Classes, document: &mut Document) -
             let bones = e.children.iter().map(Bone::read).collect();
             document.skins.push(Skin { bones, ..Skin::read(e) });
         }
+        ("deformable", "flex") => document.flexes.push(flex::flex(e).map_err(wrong)?),
         ("asset", "hfield") => document.hfields.push(HField::read(e)),
         ("asset", "mesh") => document.meshes.push(with(&class()?.mesh, e, Mesh::apply)),
         ("asset", "model") => {} // once the document itself is read

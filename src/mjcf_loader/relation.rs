@@ -72,6 +72,13 @@ table! {
     }
 }
 
+table! {
+    /// Attributes of `<equality><flex>`.
+    group FlexEquality {
+        "flex" flex: String = String::new(), TEXT, required, "Flex of which the lengths of the edges are held.";
+    }
+}
+
 /// The elements of an equality, by name.
 #[derive(Clone)]
 pub(super) enum EqualityElements {
@@ -79,6 +86,7 @@ pub(super) enum EqualityElements {
     Tendon(TendonEquality),
     Connect(Ends),
     Weld(WeldEquality),
+    Flex(FlexEquality),
 }
 
 table! {
@@ -100,6 +108,7 @@ impl Equality {
             "connect" => EqualityElements::Connect(Ends::read(e)),
             "tendon" => EqualityElements::Tendon(TendonEquality::read(e)),
             "weld" => EqualityElements::Weld(WeldEquality::read(e)),
+            "flex" => EqualityElements::Flex(FlexEquality::read(e)),
             "joint" => EqualityElements::Joint(JointEquality::read(e)),
             _ => return Err(UNREAD),
         };

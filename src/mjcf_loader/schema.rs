@@ -94,26 +94,25 @@ fn once(parent: &str, child: &str) -> bool {
         DEFAULT => child != DEFAULT,
         "body" => child == "inertial",
         "composite" => child != "joint",
+        "flex" => true,
+        "flexcomp" => child != "pin",
         _ => false,
     }
 }
-
-const FLEX: &str = "deformable bodies are not simulated here: make them of bodies and joints, or leave them out";
 
 /// Returns the error for an element of 3.3.0 that is not supported, with advice.
 fn unsupported(node: &Node) -> Option<ErrorKind> {
     let name = match node.name.as_str() {
         "plugin" => node.attribute("plugin").unwrap_or_default().to_owned(),
-        "flex" | "flexcomp" => {
-            let (name, what) = (node.name.clone(), FLEX);
-            return Some(ErrorKind::UnsupportedElement { name, what });
-        }
         _ => return None,
     };
     let what = match name.as_str() {
         "mujoco.pid" => "write actuators of position, and of intvelocity for the integral",
         "mujoco.elasticity.cable" => "give the joints of the cable stiffness and damping, or leave it out",
         "mujoco.sensor.touch_grid" => "write touch sensors on sites",
+        "mujoco.elasticity.membrane" | "mujoco.elasticity.shell" => {
+            "write <elasticity> in the flex, which has no bending"
+        }
         sdf if sdf.starts_with("mujoco.sdf.") => "write the shape as a mesh or of other shapes",
         _ => "remove it",
     };

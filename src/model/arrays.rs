@@ -299,6 +299,8 @@ arrays! {
     hfields: Vec<HField>,
     /// Skins (nskin): MuJoCo's arrays `skin_*`, one value for each skin.
     skins: Vec<Skin>,
+    /// Flexes (nflex): MuJoCo's arrays `flex_*` and `flexedge_*`, one value for each flex.
+    flexes: Vec<Flex>,
 
     /// Lights (nlight): MuJoCo's arrays `light_*`, one value for each light.
     lights: Vec<Light>,

@@ -56,6 +56,8 @@ pub struct Constants {
     pub dof_damping: Vec<f64>,
     /// See [`Arrays::tendon_length0`].
     pub tendon_length0: Vec<f64>,
+    /// Length of each edge of all flexes, and its inverse weight; see [`super::Flex`].
+    pub flexedges: Vec<[f64; 2]>,
     /// See [`Arrays::tendon_lengthspring`].
     pub tendon_lengthspring: Vec<[f64; 2]>,
     /// See [`Arrays::tendon_invweight0`].
@@ -135,6 +137,11 @@ impl Model {
         arrays.actuator_acc0 = constants.actuator_acc0;
         arrays.actuator_length0 = constants.actuator_length0;
         arrays.stat = constants.stat;
+        for flex in &mut arrays.flexes {
+            let edges = &constants.flexedges[flex.edgeadr..flex.edgeadr + flex.edge.len()];
+            flex.edge_length0 = edges.iter().map(|edge| edge[0]).collect();
+            flex.edge_invweight0 = edges.iter().map(|edge| edge[1]).collect();
+        }
         for pose in constants.weld_poses {
             if let EqualityKind::Weld { relpos, relquat, .. } = &mut arrays.eq_kind[pose.equality] {
                 (*relpos, *relquat) = (pose.relpos, pose.relquat);

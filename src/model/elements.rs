@@ -156,6 +156,11 @@ pub enum EqualityKind {
         /// The sites whose poses are held together, if it holds sites.
         sites: Option<[usize; 2]>,
     },
+    /// The edges of a flex keep their lengths at `qpos0`.
+    Flex {
+        /// The flex.
+        flex: usize,
+    },
 }
 
 impl EqualityKind {
@@ -176,6 +181,7 @@ impl EqualityKind {
             } => (1, ends([body1, body2], sites)),
             Self::Joint { joint1, joint2, .. } => (2, (0, [joint1 as i32, id(joint2)])),
             Self::Tendon { tendon1, tendon2, .. } => (3, (0, [tendon1 as i32, id(tendon2)])),
+            Self::Flex { flex } => (4, (0, [flex as i32, -1])),
         };
         ([kind, object, first, second], self.data())
     }
@@ -213,6 +219,8 @@ impl EqualityKind {
                 data[10] = torquescale;
             }
             Self::Joint { polycoef, .. } | Self::Tendon { polycoef, .. } => data[..5].copy_from_slice(&polycoef),
+            // nothing uses it, and it is what a polynomial begins with
+            Self::Flex { .. } => data[1] = 1.0,
         }
         data
     }
@@ -233,6 +241,7 @@ impl EqualityKind {
                 relquat.copy_from_slice(&data[6..10]);
             }
             Self::Joint { polycoef, .. } | Self::Tendon { polycoef, .. } => polycoef.copy_from_slice(&data[..5]),
+            Self::Flex { .. } => {}
         }
     }
 }

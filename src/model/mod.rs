@@ -10,6 +10,7 @@ mod arrays;
 mod code;
 mod complete;
 mod elements;
+mod flex;
 mod hfield;
 mod look;
 mod mesh;
@@ -23,6 +24,7 @@ pub use complete::Model;
 pub use complete::{CameraPose, Constants, LightPose, WeldPose};
 pub use elements::{EqualityKind, SameFrame, Wrap};
 pub use elements::{GeomType, JointType, Keyframe};
+pub use flex::{Flex, FlexSelfCollide};
 pub use hfield::HField;
 pub use look::{Builtin, CamLight, Light, Mark, Material, Texture, TextureType, Visual};
 pub use mesh::{Mesh, MeshHull, MeshPolygons};
@@ -79,6 +81,7 @@ sizes! {
     nmesh meshes "meshes",
     nhfield hfields "height fields",
     nskin skins "skins",
+    nflex flexes "flexes",
 }
 
 impl Wrap {

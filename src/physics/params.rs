@@ -56,6 +56,6 @@ impl Params {
 fn offset(kind: &EqualityKind) -> f64 {
     match kind {
         EqualityKind::Joint { polycoef, .. } | EqualityKind::Tendon { polycoef, .. } => polycoef[0],
-        EqualityKind::Connect { .. } | EqualityKind::Weld { .. } => 0.0,
+        EqualityKind::Connect { .. } | EqualityKind::Weld { .. } | EqualityKind::Flex { .. } => 0.0,
     }
 }

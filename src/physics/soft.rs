@@ -130,6 +130,9 @@ impl SoftEngine {
             kinematics(&self.model, s);
             com_pos(&self.model, s);
             cameras(&self.model, s);
+            if !self.model.flexes.is_empty() {
+                flexes(&self.model, &self.topology, s, false);
+            }
             tendons(&self.model, &self.topology, s);
         });
         vectorized!(crb(&self.model, &self.topology, s, &mut self.composite));

@@ -147,6 +147,15 @@ table! {
         /// Inertia of each body (nbody, 10) about the centre of mass of its tree, world axes: `Ixx, Iyy, Izz, Ixy, Ixz, Iyz`, kg m^2;
         /// mass times the offset of the body's centre of mass (3), kg m; mass, kg. Zeros for the world.
         pub cinert: [[f64; 10]; model.nbody()] = [0.0; 10];
+        /// Positions of the vertices of flexes (nflexvert, 3), world frame, m.
+        pub flexvert_xpos: [Vec3; model.nflexvert()] = [0.0; 3];
+        /// Lengths of the edges of flexes (nflexedge), m; 0 in rigid flexes.
+        pub flexedge_length: [f64; model.nflexedge()] = 0.0;
+        /// Derivatives of these lengths by the degrees of freedom that change them, one edge after another, no unit: MuJoCo's
+        /// `flexedge_J`, of which sparse entries alone are kept. None in flexes whose edges neither pull nor have damping.
+        pub flexedge_j: [f64; topology.flexedges.len()] = 0.0;
+        /// Rates of these lengths (nflexedge), m/s; 0 in flexes without derivatives.
+        pub flexedge_velocity: [f64; model.nflexedge()] = 0.0;
         /// Length of each tendon (ntendon): m for spatial tendons; for fixed ones coordinates of joints, rad or m, times coefficients.
         pub ten_length: [f64; model.ntendon()] = 0.0;
         /// Rate of each tendon's length (ntendon), its unit per second.

@@ -1,5 +1,6 @@
 //! The structure of a model's tree, derived once for the dynamics: ancestor chains, trees, the layout of the inertia.
 
+use crate::dynamics::alone;
 use crate::model::Arrays;
 use crate::tiles::{Lanes, Pattern, Tile, ZERO};
 
@@ -39,6 +40,10 @@ pub struct Topology {
     body_tile_adr: Vec<usize>,
     /// Degrees of freedom that can change the length of each tendon.
     pub tendons: DofRows,
+    /// Degrees of freedom that can change the length of each edge of flexes whose edges pull.
+    pub flexedges: DofRows,
+    /// Whether each body stands alone with slides as its joints; empty without flexes.
+    pub slides_alone: Vec<bool>,
     /// The paths of spatial tendons.
     pub tendon_paths: TendonPaths,
     /// Degrees of freedom on which actuators act that have a moment of their own; none of those on joints and tendons.
@@ -87,6 +92,8 @@ impl Topology {
             body_tiles: Vec::new(),
             body_tile_adr: Vec::new(),
             tendons: DofRows::default(),
+            flexedges: DofRows::default(),
+            slides_alone: alone(model),
             tendon_paths: TendonPaths::default(),
             actuators: DofRows::default(),
             own_moments: dof_rows::own_moments(model),
@@ -94,6 +101,7 @@ impl Topology {
         };
         topology.deal_tiles(model);
         topology.tendons = dof_rows::tendons(model, &topology);
+        topology.flexedges = dof_rows::flexedges(model, &topology);
         topology.tendon_paths = TendonPaths::new(model, &topology, &topology.tendons);
         topology.actuators = dof_rows::actuators(model, &topology);
         topology

@@ -1,6 +1,7 @@
 //! Models without MIMo: integrators, flags, keyframes, sensors, cameras.
 
 mod ball_joints;
+mod flexes;
 mod several_contacts;
 mod wrenches;
 

@@ -2,6 +2,7 @@
 
 mod actuators;
 mod elements;
+mod flexes;
 mod looks;
 mod meshes;
 mod relations;
@@ -13,6 +14,7 @@ use babybench::model::GeomType;
 pub use actuators::{activations, actuators};
 pub use elements::unrecorded;
 use elements::{of_bodies, of_geoms, of_joints, of_sites_and_cameras};
+pub use flexes::of_flexes;
 pub use looks::{looks, narrowed};
 pub use meshes::{needle, of_meshes};
 use relations::{of_contacts, of_equalities, of_sensors, of_tendons};
@@ -108,9 +110,13 @@ pub fn derived(m: &Model) -> Named {
     ]
 }
 
-/// Returns those of actuators, which no recording has.
+/// Returns those of actuators and flexes, which no recording has.
 pub fn derived_unrecorded(m: &Model) -> Named {
     vec![
+        (
+            "flexedge_invweight0",
+            m.flexes.iter().flat_map(|f| f.edge_invweight0.clone()).collect(),
+        ),
         ("actuator_acc0", m.actuator_acc0.clone()),
         ("actuator_length0", m.actuator_length0.clone()),
     ]

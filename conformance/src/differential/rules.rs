@@ -205,9 +205,11 @@ pub const RULES: &[(&str, &[&[Rule]])] = &[
     ("sensor/user", &[OF_USER, UNIT_SENSOR]),
 ];
 
-/// Elements that are compared in `conformance/data/composed`: they need other documents, or represent whole bodies.
+/// Elements that are compared in `conformance/data/composed`, or, flexes, in `conformance/tests/conformance/flexes.rs`: they need other documents,
+/// or represent whole bodies.
 fn is_composed(path: &str) -> bool {
-    path == "asset/model" || path.split('/').any(|name| name == "attach" || name == "composite")
+    let whole = ["attach", "composite", "flex", "flexcomp"];
+    path == "asset/model" || path.split('/').any(|name| whole.contains(&name))
 }
 
 /// Returns whether an element, or its section, is marked as changing no physics, or is compared elsewhere.

@@ -9,7 +9,8 @@ use libloading::Library;
 pub(super) type Handle = *mut c_void;
 
 /// Elements that have names, with `mjtObj`'s numbers.
-pub const NAMED: [(&str, i32, &str); 14] = [
+pub const NAMED: [(&str, i32, &str); 15] = [
+    ("flex", 9, "nflex"),
     ("skin", 11, "nskin"),
     ("body", 1, "nbody"),
     ("jnt", 3, "njnt"),

@@ -10,6 +10,7 @@ mod contact_free;
 mod contact_gaps;
 mod contact_geometry;
 mod differential;
+mod flexes;
 mod fused_bodies;
 mod growth;
 mod hulls;
@@ -53,6 +54,7 @@ fn main() -> ExitCode {
         contact_gaps::trials(),
         contact_geometry::trials(),
         differential::trials(),
+        flexes::trials(),
         fused_bodies::trials(),
         language::trials(),
         left_out::trials(),

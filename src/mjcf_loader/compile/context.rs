@@ -264,6 +264,7 @@ pub(super) struct Ids {
     pub camera: Names,
     pub tendon: Names,
     pub actuator: Names,
+    pub flex: Names,
 }
 
 impl Ids {
@@ -298,6 +299,7 @@ impl Ids {
             texture: Names::new(tree, "texture", textures)?,
             camera: Names::new(tree, "camera", cameras)?,
             tendon: Names::new(tree, "tendon", document.tendons.iter().map(|t| (t.at, &t.name)))?,
+            flex: Names::new(tree, "flex", document.flexes.iter().map(|f| (f.at, &f.name)))?,
             actuator: Names::new(tree, "actuator", document.actuators.iter().map(|a| (a.at, &a.name)))?,
             hfield: Names::new(tree, "hfield", hfields)?,
             mesh: Names::new(tree, "mesh", meshes)?,

@@ -37,6 +37,7 @@ pub(crate) fn leave_out(tree: &Tree, document: &mut Document) -> Result<(), Load
     }
     document.textures.clear();
     document.materials.clear();
+    document.flexes.iter_mut().for_each(|flex| flex.look.texcoord.clear());
     let sites = document.bodies.iter().flat_map(|body| &body.sites);
     let others = sites.map(|site| (site.at, &site.material));
     let others = others.chain(
@@ -45,7 +46,8 @@ pub(crate) fn leave_out(tree: &Tree, document: &mut Document) -> Result<(), Load
             .iter()
             .map(|tendon| (tendon.at, &tendon.looks.material)),
     );
-    let mut others = others.chain(document.skins.iter().map(|skin| (skin.at, &skin.material)));
+    let others = others.chain(document.skins.iter().map(|skin| (skin.at, &skin.material)));
+    let mut others = others.chain(document.flexes.iter().map(|flex| (flex.at, &flex.look.material)));
     if let Some((at, _)) = others.find(|(_, material)| material.as_ref().is_some_and(|name| !name.is_empty())) {
         return Err(tree.error(at, ErrorKind::Invalid(MATERIAL)));
     }

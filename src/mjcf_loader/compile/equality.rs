@@ -25,6 +25,9 @@ pub(super) fn compile_equality(
         EqualityElements::Tendon(tendon) => scope.tendon(tendon)?,
         EqualityElements::Connect(ends) => scope.connect(ends)?,
         EqualityElements::Weld(weld) => scope.weld(weld)?,
+        EqualityElements::Flex(held) => EqualityKind::Flex {
+            flex: ids.flex.find(context.tree, equality.at, "flex", &held.flex)?,
+        },
     };
     arrays.eq_name.push(equality.name.clone());
     arrays.eq_kind.push(kind);

@@ -10,6 +10,7 @@ mod context;
 mod custom;
 mod discard;
 mod equality;
+mod flex;
 mod fluid;
 mod fuse;
 mod geom;
@@ -26,6 +27,7 @@ mod tendon;
 pub(super) use asset_name::stem;
 use context::{Context, Ids, UserDataSize};
 pub(super) use discard::leave_out;
+pub(super) use flex::expand_flexes;
 pub use geometry::bounding_radius;
 pub(super) use geometry::{frame_to_quat, normalize, volume};
 
@@ -81,6 +83,7 @@ pub(super) fn compile(
     if context.settings().discardvisual {
         discard::drop_meshes(&mut arrays);
     }
+    flex::compile_flexes(&context, document, &ids, &mut arrays)?;
     constraint::compile_contacts(&context, document, &ids, &mut arrays)?;
     for equality in &document.equalities {
         equality::compile_equality(&context, equality, &ids, &mut arrays)?;

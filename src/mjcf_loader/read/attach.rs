@@ -2,6 +2,7 @@
 
 use std::collections::BTreeSet;
 
+use super::flex::COPIED;
 use super::insertion::Insertion;
 use super::keys::{resize_keys, say_keys};
 use crate::attached::{Reference, hanging};
@@ -29,6 +30,9 @@ pub(super) fn attach_model(
     let Some(mut model) = document.models.remove(&attach.model) else {
         return Err(unknown(tree, &attach, "model", &attach.model));
     };
+    if !model.flexes.is_empty() || !model.flexcomps.is_empty() {
+        return Err(tree.error(attach.at, ErrorKind::Invalid(COPIED)));
+    }
     let taken = take(&attach, &mut model, spot, tree, document);
     document.models.insert(attach.model, model);
     taken

@@ -3,7 +3,7 @@
 use super::attach::attach_model;
 use super::cable::cable;
 use super::insertion::{Insertion, known};
-use super::{Classes, replicate, with};
+use super::{Classes, flex, replicate, with};
 use crate::document::{Body, BodyFrame, Camera, Document, FreeJoint, Geom, Inertial, Joint, Light, Site};
 use crate::error::{ErrorKind, LoadError, UNREAD};
 use crate::model::JointType;
@@ -32,10 +32,13 @@ pub(super) fn content(
             }
             "replicate" => {
                 let original = replicate::open(e, spot, inner, classes, document)?;
+                let flexes = document.flexcomps.len();
                 content(e, original.spot(), inner, classes, document)?;
+                flex::check_copied(e, document.flexcomps.len() > flexes, classes)?;
                 original.copy(spot, classes.tree, document)?;
             }
             "composite" => cable(e, spot, classes.tree, document)?,
+            "flexcomp" => flex::flexcomp(e, spot, classes, document)?,
             "attach" => attach_model(e, spot, classes.tree, document)?,
             _ => hang(e, spot, around, classes, &mut document.bodies)?,
         }

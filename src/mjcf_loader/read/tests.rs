@@ -90,12 +90,25 @@ fn every_element_that_the_rules_allow_has_a_reader() {
         is_read("composite", child, cable::prototypes(&e).map(drop).map_err(wrong));
         count += 1;
     }
+    for path in [&["deformable", "flex"][..], &["worldbody", "flexcomp"]] {
+        let parent = rule(path);
+        for child in parent.children {
+            let mut e = Element::bare(parent);
+            e.children.push(Element::bare(child));
+            let read = match parent.name {
+                "flex" => flex::flex(&e).map(drop).map_err(wrong),
+                _ => flex::flexcomp(&e, Insertion::WORLD, &classes, &mut document()),
+            };
+            is_read(parent.name, child, read);
+            count += 1;
+        }
+    }
     assert!(count > 130, "{count} elements");
 }
 
 #[test]
 fn elements_that_hold_others_are_those_whose_contents_are_read() {
-    const HOLDING: [&str; 24] = [
+    const HOLDING: [&str; 26] = [
         "actuator",
         "asset",
         "body",
@@ -107,6 +120,8 @@ fn elements_that_hold_others_are_those_whose_contents_are_read() {
         "deformable",
         "equality",
         "fixed",
+        "flex",
+        "flexcomp",
         "frame",
         "keyframe",
         "material",

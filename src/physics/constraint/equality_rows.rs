@@ -29,6 +29,7 @@ pub fn equalities(rows: &mut RowAppender, s: &State) {
             } => tendon_equality(rows, s, id, (tendon1, tendon2), polycoef),
             EqualityKind::Connect { body1, body2, .. } => connect_equality(rows, s, id, [body1, body2]),
             EqualityKind::Weld { body1, body2, .. } => weld_equality(rows, s, id, [body1, body2]),
+            EqualityKind::Flex { flex } => flex_equality(rows, s, id, flex),
         }
     }
 }
@@ -92,6 +93,30 @@ fn tendon_equality(rows: &mut RowAppender, s: &State, id: usize, (first, second)
             solref: model.eq_solref[id],
             solimp: model.eq_solimp[id],
             diag,
+        };
+        rows.row(pos, 0.0, pos, spec);
+    }
+}
+
+/// Appends a row for each edge of a flex whose ends can move against each other: its length is that at `qpos0`.
+#[inline(never)]
+fn flex_equality(rows: &mut RowAppender, s: &State, id: usize, flex: usize) {
+    let (model, topology) = (rows.model, rows.topology);
+    let flex = &model.flexes[flex];
+    for (k, _) in flex.edge_rigid.iter().enumerate().filter(|(_, rigid)| !**rigid) {
+        let e = flex.edgeadr + k;
+        let entries = topology
+            .flexedges
+            .row(e)
+            .iter()
+            .zip(&s.flexedge_j[topology.flexedges.range(e)]);
+        rows.block(ConstraintType::Equality, id, 1);
+        entries.for_each(|(&d, &v)| rows.entry(d as usize, v));
+        let pos = s.flexedge_length[e] - flex.edge_length0[k];
+        let spec = RowParameters {
+            solref: model.eq_solref[id],
+            solimp: model.eq_solimp[id],
+            diag: flex.edge_invweight0[k],
         };
         rows.row(pos, 0.0, pos, spec);
     }

@@ -6,7 +6,7 @@ use super::kinematics::local_to_global;
 use super::springs::{bias, slack, springs};
 use super::stages::{com_pos, crb, kinematics, solve, update};
 use super::transmission::{dense_moment, length, transmissions};
-use super::{Articulated, CompositeInertia, tendons};
+use super::{Articulated, CompositeInertia, flexes, tendons};
 use crate::MAXVAL;
 use crate::math::*;
 use crate::model::{
@@ -24,6 +24,7 @@ pub fn constants(model: &Arrays) -> Constants {
     let mut s = State::new(model, &topology);
     kinematics(model, &mut s);
     com_pos(model, &mut s);
+    flexes(model, &topology, &mut s, true);
     tendons(model, &topology, &mut s);
     transmissions(model, &topology, &mut s);
     let mut composite = CompositeInertia::default();
@@ -38,6 +39,7 @@ pub fn constants(model: &Arrays) -> Constants {
         dof_invweight0,
         jnt_stiffness,
         dof_damping,
+        flexedges: flexedges(model, &mut weights),
         tendon_length0: s.ten_length.clone(),
         tendon_lengthspring: slack(model, &topology),
         tendon_invweight0: (0..model.ntendon()).map(|t| weights.tendon(t)).collect(),
@@ -217,12 +219,38 @@ impl<'a> InverseWeights<'a> {
         self.x.iter().map(|a| a * a).sum::<f64>().sqrt()
     }
 
+    fn edge(&mut self, e: usize) -> f64 {
+        let rows = &self.topology.flexedges;
+        let entries = rows.row(e).iter().zip(&self.s.flexedge_j[rows.range(e)]);
+        let jac: Vec<(usize, f64)> = entries.map(|(&d, &arm)| (d as usize, arm)).collect();
+        self.of(&jac)
+    }
+
     fn tendon(&mut self, t: usize) -> f64 {
         let rows = &self.topology.tendons;
         let entries = rows.row(t).iter().zip(&self.s.ten_j[rows.range(t)]);
         let jac: Vec<(usize, f64)> = entries.map(|(&d, &arm)| (d as usize, arm)).collect();
         self.of(&jac)
     }
+}
+
+/// Returns the length and the inverse weight of each edge of all flexes.
+fn flexedges(model: &Arrays, weights: &mut InverseWeights) -> Vec<[f64; 2]> {
+    let mut edges = Vec::with_capacity(model.nflexedge());
+    for flex in &model.flexes {
+        for (&rigid, ends) in flex.edge_rigid.iter().zip(&flex.edge) {
+            let [a, b] = ends.map(|v| flex.vertbodyid[v]);
+            let weight = if rigid {
+                0.0
+            } else if slides_alone(model, a) && slides_alone(model, b) {
+                (1.0 / model.body_mass[a] + 1.0 / model.body_mass[b]) / 2.0
+            } else {
+                weights.edge(edges.len())
+            };
+            edges.push([weights.s.flexedge_length[edges.len()], weight]);
+        }
+    }
+    edges
 }
 
 /// Returns the poses at `qpos0` that cameras keep which do not turn with their body.
@@ -256,7 +284,7 @@ fn light_poses(model: &Arrays, s: &State) -> Vec<LightPose> {
 
 /// Tells whether MuJoCo gives a body its whole inverse mass, not the mean over directions: one that [stands alone](is_simple) and
 /// whose joints all slide (`body_simple` 2).
-fn slides_alone(model: &Arrays, b: usize) -> bool {
+pub(super) fn slides_alone(model: &Arrays, b: usize) -> bool {
     let joints = model.body_jntadr[b]..model.body_jntadr[b] + model.body_jntnum[b];
     is_simple(model, b) && joints.into_iter().all(|j| model.jnt_type[j] == JointType::Slide)
 }
@@ -377,6 +405,13 @@ fn sizes(model: &Arrays, s: &State) -> Vec<f64> {
         let b = model.geom_bodyid[g];
         if model.geom_rbound[g] > 0.0 {
             size[b] = size[b].max(model.geom_rbound[g] + norm(sub(s.xipos[b], s.geom_xpos[g])));
+        }
+    }
+    for flex in &model.flexes {
+        for (k, ends) in flex.edge.iter().enumerate() {
+            for b in ends.map(|v| flex.vertbodyid[v]) {
+                size[b] = size[b].max(s.flexedge_length[flex.edgeadr + k]);
+            }
         }
     }
     size

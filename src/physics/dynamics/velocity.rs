@@ -1,8 +1,9 @@
 //! Velocities, bias forces and passive forces.
 
+use super::flex::flex_forces;
 use super::fluid::{gravity_compensation, medium};
 use super::transmission;
-use crate::math::{quat_at, quat_normalize, rotation_between};
+use crate::math::{Vec3, quat_at, quat_normalize, rotation_between};
 use crate::model::{JointType, Model};
 use crate::spatial::*;
 use crate::state::State;
@@ -47,6 +48,8 @@ pub struct BiasScratch {
     force: Vec<Spatial>,
     /// Wrench on each body (nbody) that its velocity alone asks for: `cvel x I cvel`.
     pub gyroscopic: Vec<Spatial>,
+    /// Elastic forces on the vertices of a flex, N.
+    flex: Vec<Vec3>,
 }
 
 impl BiasScratch {
@@ -129,16 +132,16 @@ pub fn fwd_velocity(model: &Model, topology: &Topology, s: &mut State, scratch: 
         s.qfrc_bias[d] = dot6(&s.cdof[d], &scratch.force[model.dof_bodyid[d]]);
     }
     if model.opt.flags.passive {
-        passive(model, topology, s);
+        passive(model, topology, s, &mut scratch.flex);
     } else {
         s.qfrc_passive.fill(0.0);
         s.qfrc_gravcomp.fill(0.0);
     }
 }
 
-/// Computes `qfrc_passive`: springs and dampers of joints and tendons, compensated gravity, the medium.
+/// Computes `qfrc_passive`: springs and dampers of joints, flexes and tendons, elasticity of flexes, compensated gravity, the medium.
 #[inline(always)]
-fn passive(model: &Model, topology: &Topology, s: &mut State) {
+fn passive(model: &Model, topology: &Topology, s: &mut State, flex: &mut Vec<Vec3>) {
     let params = &*s.params;
     for d in 0..model.nv {
         s.qfrc_passive[d] = -params.dof_damping[d] * s.qvel[d];
@@ -164,6 +167,9 @@ fn passive(model: &Model, topology: &Topology, s: &mut State) {
                 s.qfrc_passive[d + scalars + i] -= k * turn[i];
             }
         }
+    }
+    if !model.flexes.is_empty() {
+        flex_forces(model, topology, s, flex);
     }
     for t in 0..model.ntendon() {
         pull(model, topology, s, t);

@@ -62,6 +62,13 @@ fn couplings(model: &Model, topology: &Topology) -> Result<(), RapierError> {
             return Err(RapierError::unsupported("tendon", &model.tendon_name[t], what));
         }
     }
+    if let Some(flex) = model.flexes.first() {
+        return Err(RapierError::unsupported(
+            "flex",
+            &flex.name,
+            "deformable bodies are not supported",
+        ));
+    }
     for e in 0..model.neq() {
         if let EqualityKind::Tendon { .. } = model.eq_kind[e] {
             let what = "tendons cannot be held";

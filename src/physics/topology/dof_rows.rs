@@ -64,6 +64,21 @@ pub(super) fn tendons(model: &Arrays, topology: &Topology) -> DofRows {
     DofRows::new((0..model.ntendon()).map(of))
 }
 
+/// Returns the degrees of freedom that can change the length of each edge of the flexes whose edges pull.
+pub(super) fn flexedges(model: &Arrays, topology: &Topology) -> DofRows {
+    let edges = model
+        .flexes
+        .iter()
+        .flat_map(|flex| flex.edge.iter().map(move |edge| (flex, edge)));
+    DofRows::new(edges.map(|(flex, &[a, b])| {
+        if !flex.edges_pull() {
+            return Vec::new();
+        }
+        let (first, second) = topology.apart(flex.vertbodyid[a], flex.vertbodyid[b]);
+        [first, second].concat()
+    }))
+}
+
 /// Returns the degrees of freedom on which each actuator acts that has a moment of its own: on a ball joint, a free
 /// joint, a site, a slider-crank, contacts.
 pub(super) fn actuators(model: &Arrays, topology: &Topology) -> DofRows {

@@ -201,7 +201,7 @@ fn invariant_7_unsupported_mjcf_is_an_error_that_names_the_element() {
     for (element, xml) in [
         (
             "flexcomp",
-            r#"<mujoco><worldbody><flexcomp name="a"/></worldbody></mujoco>"#,
+            r#"<mujoco><worldbody><flexcomp name="a" dof="trilinear"/></worldbody></mujoco>"#,
         ),
         (
             "skin",

@@ -163,6 +163,42 @@ impl Triangles {
         Ok(mesh)
     }
 
+    /// Returns the triangles alone, with the first of vertices at one place for all of them, in their order.
+    #[must_use]
+    pub fn united(self) -> Self {
+        let Self { vert, mut face, .. } = self;
+        // both zeros are one number to MuJoCo
+        let key = |i: u32| vert[i as usize].map(|x| x + 0.0);
+        let mut order: Vec<u32> = (0..vert.len() as u32).collect();
+        let compare = |a: &u32, b: &u32| {
+            let (p, q) = (key(*a), key(*b));
+            (0..3).fold(std::cmp::Ordering::Equal, |order, k| order.then(p[k].total_cmp(&q[k])))
+        };
+        order.sort_by(compare);
+        let mut first: Vec<u32> = (0..vert.len() as u32).collect();
+        for pair in order.windows(2) {
+            if key(pair[0]) == key(pair[1]) {
+                first[pair[1] as usize] = first[pair[0] as usize];
+            }
+        }
+        let mut place = vec![0; vert.len()];
+        let mut kept = Vec::new();
+        for (i, v) in vert.iter().enumerate() {
+            if first[i] as usize == i {
+                place[i] = kept.len() as u32;
+                kept.push(*v);
+            }
+        }
+        for corner in face.as_flattened_mut() {
+            *corner = place[first[*corner as usize] as usize];
+        }
+        Self {
+            vert: kept,
+            face,
+            ..Self::default()
+        }
+    }
+
     /// Returns the number of elements that count towards [`Limits::mesh_elements`].
     pub fn elements(&self) -> usize {
         self.vert.len() + self.normal.len() + self.texcoord.len() + self.face.len()

@@ -52,39 +52,10 @@ pub(super) fn read(bytes: &[u8], lefthanded: bool, most: usize) -> Result<Triang
             [first, first + 1, first + 2]
         });
     }
-    Ok(unite(&vert, face))
-}
-
-/// Keeps the first of vertices at one place, in their order.
-fn unite(vert: &[[f32; 3]], mut face: Vec<[u32; 3]>) -> Triangles {
-    // both zeros are one number to MuJoCo
-    let key = |i: u32| vert[i as usize].map(|x| x + 0.0);
-    let mut order: Vec<u32> = (0..vert.len() as u32).collect();
-    let compare = |a: &u32, b: &u32| {
-        let (p, q) = (key(*a), key(*b));
-        (0..3).fold(std::cmp::Ordering::Equal, |order, k| order.then(p[k].total_cmp(&q[k])))
-    };
-    order.sort_by(compare);
-    let mut first: Vec<u32> = (0..vert.len() as u32).collect();
-    for pair in order.windows(2) {
-        if key(pair[0]) == key(pair[1]) {
-            first[pair[1] as usize] = first[pair[0] as usize];
-        }
-    }
-    let mut place = vec![0; vert.len()];
-    let mut kept = Vec::new();
-    for (i, v) in vert.iter().enumerate() {
-        if first[i] as usize == i {
-            place[i] = kept.len() as u32;
-            kept.push(*v);
-        }
-    }
-    for corner in face.as_flattened_mut() {
-        *corner = place[first[*corner as usize] as usize];
-    }
-    Triangles {
-        vert: kept,
+    let triangles = Triangles {
+        vert,
         face,
         ..Triangles::default()
-    }
+    };
+    Ok(triangles.united())
 }

@@ -39,6 +39,18 @@ pub(super) fn potential(model: &Model, s: &State) -> f64 {
         let stretched = (length - longest).max(0.0) + (shortest - length).max(0.0);
         energy += 0.5 * model.tendon_stiffness[t] * stretched * stretched;
     }
+    // as in MuJoCo, which leaves out that of elasticity
+    for flex in model.flexes.iter().filter(|flex| !flex.rigid) {
+        for (k, rest) in flex
+            .edge_length0
+            .iter()
+            .enumerate()
+            .filter(|(k, _)| !flex.edge_rigid[*k])
+        {
+            let stretched = rest - s.flexedge_length[flex.edgeadr + k];
+            energy += 0.5 * flex.edgestiffness * stretched * stretched;
+        }
+    }
     energy
 }
 
