@@ -62,6 +62,37 @@ fn runs_are_recorded_repeated_and_measured() {
     );
     let json: Value = serde_json::from_str(&succeed(&["measure", &record, "--json", "--episode", "0"])).expect("JSON");
     assert_eq!(json["steps"], 60);
+    // bands within what 100 frames a second show, and windows that fit 0.3 s
+    let seen = [
+        "measure",
+        &record,
+        "--movement",
+        "--fps",
+        "100",
+        "--band",
+        "1,50",
+        "--window",
+        "16",
+    ];
+    let out = succeed(&seen);
+    assert!(
+        out.contains("100 frames a second, band 1 to 50 Hz, window 16 frames"),
+        "{out}"
+    );
+    assert!(out.contains("right_hand_speed") && out.contains("m/s"), "{out}");
+    let json: Value = serde_json::from_str(&succeed(
+        &[&seen[..], &["--json", "--jitter", "2", "--frame", "hip"]].concat(),
+    ))
+    .expect("JSON");
+    assert_eq!(json["options"]["frame"], "hip");
+    assert!(json["values"]["exponent"].is_number(), "{json}");
+    let error = fail(&["measure", &record, "--movement", "--band", "1,20"]);
+    assert!(
+        error.contains("band is 1,20, expected two frequencies above 0"),
+        "{error}"
+    );
+    let error = fail(&["measure", &record, "--fps", "25"]);
+    assert!(error.contains("--movement"), "{error}");
     let error = fail(&["run", "--config", &config, "--record", &record, "--quiet"]);
     assert!(error.contains("this folder already has a record"), "{error}");
 }

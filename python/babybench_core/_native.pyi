@@ -39,6 +39,7 @@ __all__ = [
     "measure_record",
     "model_columns",
     "model_extras",
+    "movement_of_record",
     "paint",
     "play_senses",
     "replay_record",
@@ -81,6 +82,18 @@ def config_from_yaml(text: str, file: str = "configuration", folder: str | os.Pa
 
 def measure_record(folder: str | os.PathLike[str], episode: int | None = None) -> str:
     """Returns the measures of an episode of a record, or the means of all, as JSON."""
+
+def movement_of_record(
+    folder: str | os.PathLike[str],
+    episode: int | None,
+    fps: float,
+    band: tuple[float, float],
+    window: int,
+    jitter: float,
+    seed: int,
+    frame: str,
+) -> str:
+    """Returns measures of the movements in an episode of a record, or the means of all, as JSON."""
 
 def play_senses(
     env: Env,

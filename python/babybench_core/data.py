@@ -304,6 +304,38 @@ class Record(Exports, Mapping[int, Episode]):
         measures: dict[str, Any] = json.loads(_native.measure_record(self.folder, episode))
         return measures
 
+    def movement(
+        self,
+        episode: int | None = None,
+        *,
+        fps: float = 25.0,
+        band: tuple[float, float] = (0.1, 5.0),
+        window: int = 1024,
+        jitter: float = 0.0,
+        seed: int = 0,
+        frame: str = "world",
+    ) -> dict[str, Any]:
+        """Returns measures of how limbs and joints move in an episode, or the means of all, as the guide defines them.
+
+        Args:
+            episode: One episode; all by default.
+            fps: Frames a second of the camera that sees the movement, Hz.
+            band: The band in which exponents are fitted, Hz.
+            window: Frames of a window of the spectrum, a power of two.
+            jitter: Standard deviation of the camera's error in each coordinate, mm.
+            seed: Seed of these errors.
+            frame: ``world``, or ``hip`` for movements without what the trunk does.
+
+        Returns:
+            ``values`` by name, without those that are undefined; ``options``, ``episodes`` and ``seconds``; and ``leading``, the
+            segment that turned first in each roll.
+        """
+        from babybench_core import _native
+
+        text = _native.movement_of_record(self.folder, episode, fps, band, window, jitter, seed, frame)
+        found: dict[str, Any] = json.loads(text)
+        return found
+
     def replay(self, episode: int) -> int | None:
         """Repeats an episode; returns the first step whose bits differ, ``None`` if all are the same."""
         from babybench_core import _native

@@ -65,7 +65,7 @@ mod _native {
     #[pymodule_export]
     use super::physics_model::PhysicsModel;
     #[pymodule_export]
-    use super::record::{Folder, Recorder, measure_record, play_senses, replay_record};
+    use super::record::{Folder, Recorder, measure_record, movement_of_record, play_senses, replay_record};
     #[pymodule_export]
     use super::scene::{embedded_files, model_extras, scene_file};
     #[pymodule_export]

@@ -4,7 +4,8 @@ use std::path::PathBuf;
 use std::sync::{Mutex, PoisonError};
 
 use babybench::Limits;
-use babybench::eval::Measures;
+use babybench::eval::movement::{MovementError, MovementFrame};
+use babybench::eval::{Measures, Movement, MovementOptions};
 use babybench::formats::npz::NpzError;
 use babybench::runs::{
     Motion, MotionError, MotionMode, Owner, Record, RecordError, RecordOptions, Recorder as Inside, play_motion,
@@ -136,6 +137,42 @@ pub fn measure_record(py: Python<'_>, folder: PathBuf, episode: Option<u64>) -> 
         let mean = Measures::mean(&all);
         let mean =
             mean.ok_or_else(|| PyValueError::new_err(format!("{}: the record has no steps", folder.display())))?;
+        Ok(mean.to_json())
+    })
+}
+
+/// Returns measures of the movements in an episode of a record, or the means of all, as JSON.
+#[pyfunction]
+#[pyo3(signature = (folder, episode, fps, band, window, jitter, seed, frame))]
+#[allow(clippy::too_many_arguments)] // keywords in Python
+pub fn movement_of_record(
+    py: Python<'_>,
+    folder: PathBuf,
+    episode: Option<u64>,
+    fps: f64,
+    band: [f64; 2],
+    window: usize,
+    jitter: f64,
+    seed: u64,
+    frame: &str,
+) -> PyResult<String> {
+    let mut options = MovementOptions::default();
+    (options.fps, options.band, options.window) = (fps, band, window);
+    (options.jitter, options.seed) = (jitter, seed);
+    options.frame = MovementFrame::of(frame)
+        .ok_or_else(|| PyValueError::new_err(format!("frame is {frame:?}, expected \"world\" or \"hip\"")))?;
+    py.detach(|| {
+        let record = Record::open(&folder).map_err(exception)?;
+        let all = match episode {
+            Some(episode) => Movement::of_episode(&record, episode, &options).map(|one| vec![one]),
+            None => Movement::of_record(&record, &options),
+        };
+        let all = all.map_err(|error| match error {
+            MovementError::Record(error) => exception(error),
+            other => PyValueError::new_err(other.to_string()),
+        })?;
+        let mean = Movement::mean(&all)
+            .ok_or_else(|| PyValueError::new_err(format!("{}: the record has no steps", folder.display())))?;
         Ok(mean.to_json())
     })
 }

@@ -64,6 +64,17 @@ def test_a_record_is_repeated_and_measured(folder):
     assert both["episodes"] == 2
     assert both["steps"] == 2 * STEPS
     assert record.measure(0)["seconds"] == pytest.approx(STEPS * 0.005)
+    seen = {"fps": 200, "band": (10, 100), "window": 16}
+    movement = record.movement(**seen)
+    assert movement["episodes"] == 2
+    assert movement["options"]["window"] == 16
+    assert movement["values"]["right_hand_speed"] > 0
+    assert record.movement(0, **seen, jitter=1, seed=1) == record.movement(0, **seen, jitter=1, seed=1)
+    assert record.movement(0, **seen, jitter=1, seed=1) != record.movement(0, **seen, jitter=1, seed=2)
+    with pytest.raises(ValueError, match="band is 10,300"):
+        record.movement(**{**seen, "band": (10, 300)})
+    with pytest.raises(ValueError, match='frame is "head"'):
+        record.movement(frame="head")
 
 
 def test_an_episode_is_a_table_of_pandas(folder):

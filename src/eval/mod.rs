@@ -46,6 +46,8 @@ pub mod film;
 #[cfg(feature = "npz")]
 mod measures;
 #[cfg(feature = "npz")]
+pub mod movement;
+#[cfg(feature = "npz")]
 mod pack;
 mod scores;
 
@@ -60,6 +62,8 @@ pub use film::RoomFilm;
 pub use film::{Film, FilmError};
 #[cfg(feature = "npz")]
 pub use measures::{HandMeasures, Measures, RegionMeasures};
+#[cfg(feature = "npz")]
+pub use movement::{Movement, MovementOptions};
 #[cfg(feature = "npz")]
 pub use pack::{PackError, PackOptions, PackedSubmission, pack};
 pub use scores::{MAX_EPISODES, steps};

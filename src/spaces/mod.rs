@@ -10,6 +10,8 @@ pub use noise::{ActionNoise, Noise, NoiseError};
 pub(crate) use noise::{INFANT_EXPONENT, INFANT_WEEKS};
 pub use rng::NumpyRng;
 pub(crate) use spectrum::ColoredNoise;
+#[cfg(all(feature = "eval", feature = "npz"))]
+pub(crate) use spectrum::fourier;
 pub(crate) use values::Number;
 pub use values::Values;
 pub use values::{Array, ValuesMut};

@@ -118,9 +118,9 @@ fn turns(length: usize) -> Vec<[f64; 2]> {
     (0..length / 2).map(turn).map(|(sin, cos)| [cos, sin]).collect()
 }
 
-/// Returns the spectrum of a series whose length is a power of two, up to the conjugate.
-#[cfg(test)]
-pub(super) fn spectrum(series: &[f64]) -> Vec<[f64; 2]> {
+/// Returns the Fourier transform of a series whose length is a power of two, up to the conjugate.
+#[cfg(any(test, all(feature = "eval", feature = "npz")))]
+pub(crate) fn fourier(series: &[f64]) -> Vec<[f64; 2]> {
     let turns = turns(series.len());
     let mut z: Vec<[f64; 2]> = series.iter().map(|x| [*x, 0.0]).collect();
     transform(&mut z, &turns);

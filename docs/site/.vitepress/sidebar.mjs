@@ -44,7 +44,7 @@ export const sidebar = [
   },
   {
     text: "Experiments",
-    items: items("guide", { benchmark: "Records, measures, benchmarks", motions: "Motions", cluster: "What an hour buys" }),
+    items: items("guide", { benchmark: "Records, measures, benchmarks", movement: "Measures of movement", motions: "Motions", cluster: "What an hour buys" }),
   },
   {
     text: "Reference",

@@ -106,6 +106,34 @@ impl Record {
         Ok(Npz::open(self.path(episode)?)?)
     }
 
+    /// Makes an environment whose scene and body are those of an episode.
+    ///
+    /// # Errors
+    /// An episode that does not exist, an archive that cannot be read; as [`Env::new`].
+    #[cfg(feature = "eval")]
+    pub(crate) fn env_of(&self, episode: u64) -> Result<Env, RecordError> {
+        let mut env = Env::new(self.manifest.configuration.clone())?;
+        self.become_of(episode, &self.npz(episode)?, &mut env)?;
+        Ok(env)
+    }
+
+    /// Gives an environment the age and the changed numbers of an episode.
+    fn become_of(&self, episode: u64, npz: &Npz, env: &mut Env) -> Result<(), RecordError> {
+        let described = self.manifest.episodes.iter().find(|e| e.episode == episode);
+        let age = described.and_then(|e| e.age).unwrap_or(self.manifest.configuration.age);
+        if env.config().age != age {
+            env.mimo_mut().set_age(age)?;
+        }
+        let mut changes = Vec::new();
+        for array in npz.arrays() {
+            if let Some(changed) = array.name.strip_prefix(MODEL) {
+                changes.push((changed.to_string(), npz.get_f64(&array.name)?.data));
+            }
+        }
+        env.model_mut().set_changed_numbers(&changes)?;
+        Ok(())
+    }
+
     /// Repeats an episode in an environment of the record's configuration, and compares the bits of every step.
     ///
     /// # Errors
@@ -128,18 +156,7 @@ impl Record {
             source,
         };
         let start = Snapshot::from_bytes(npz.get_u8("snapshot")?.data).map_err(snapshot)?;
-        let described = self.manifest.episodes.iter().find(|e| e.episode == episode);
-        let age = described.and_then(|e| e.age).unwrap_or(self.manifest.configuration.age);
-        if env.config().age != age {
-            env.mimo_mut().set_age(age)?;
-        }
-        let mut changes = Vec::new();
-        for array in npz.arrays() {
-            if let Some(changed) = array.name.strip_prefix(MODEL) {
-                changes.push((changed.to_string(), npz.get_f64(&array.name)?.data));
-            }
-        }
-        env.model_mut().set_changed_numbers(&changes)?;
+        self.become_of(episode, &npz, env)?;
         env.restore(&start).map_err(snapshot)?;
         let (mut action, mut first_difference) = (Vec::with_capacity(na), None);
         for (t, &expected) in checksums.iter().enumerate() {

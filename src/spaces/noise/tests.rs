@@ -108,7 +108,7 @@ fn exponent(noise: Noise, clipped: bool) -> f64 {
             let mean = part.iter().sum::<f64>() / WINDOW as f64;
             let hann = |k: usize| 0.5 - 0.5 * pxfm::f_cos(TAU * k as f64 / WINDOW as f64);
             let tapered: Vec<f64> = part.iter().enumerate().map(|(k, x)| (x - mean) * hann(k)).collect();
-            for (sum, re_im) in power.iter_mut().zip(crate::spaces::spectrum::spectrum(&tapered)) {
+            for (sum, re_im) in power.iter_mut().zip(crate::spaces::spectrum::fourier(&tapered)) {
                 *sum += re_im[0] * re_im[0] + re_im[1] * re_im[1];
             }
         }
