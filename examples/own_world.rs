@@ -1,4 +1,5 @@
-//! Adds MIMo to a Rapier world of your own, beside bodies that the model does not know: a ball falls on MIMo.
+//! Adds MIMo to a Rapier world and solves him with Rapier's pipeline, for comparison: `examples/rapier_world.rs` keeps this library's
+//! engine. A ball falls on MIMo.
 //!
 //! ```sh
 //! cargo run --release --features rapier --example own_world

@@ -71,7 +71,7 @@
 //! | feature | adds |
 //! |---|---|
 //! | `eval` (default) | [`runs`], [`policy`], [`eval`]: logs, policies, scores, evaluation; serde for configurations and results |
-//! | `rapier` | an engine that solves with [Rapier](https://rapier.rs)'s own pipeline; ray casts and shape queries |
+//! | `rapier` | MIMo in worlds of [Rapier](https://rapier.rs) ([`env::Infant`]); ray casts and shape queries; an engine on its pipeline |
 //! | `parallel` | threads in vectors of environments, and for the second eye |
 //! | `npz` | NumPy archives, for recordings and replays |
 //! | `onnx` | policies that are ONNX models, run in pure Rust |
@@ -148,6 +148,9 @@ struct Readme;
 #[cfg(all(doctest, feature = "rapier"))]
 #[doc = include_str!("../docs/guide/rust.md")]
 struct Guide;
+#[cfg(all(doctest, feature = "rapier"))]
+#[doc = include_str!("../docs/guide/own-world.md")]
+struct OwnWorld;
 
 /// And those in the tutorials.
 #[cfg(doctest)]

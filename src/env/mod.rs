@@ -13,6 +13,8 @@ mod episode;
 pub(crate) mod error;
 mod eyes;
 mod fields;
+#[cfg(feature = "rapier")]
+mod infant;
 pub(crate) mod info;
 mod mimo_mut;
 mod model_change;
@@ -47,6 +49,8 @@ pub use eyes::draw_eyes;
 pub use fields::{InfoField, InfoValue};
 #[cfg(feature = "eval")]
 pub(crate) use fields::{InfoSource, PARTS, STEPS};
+#[cfg(feature = "rapier")]
+pub use infant::{Infant, InfantError, InfantSnapshot};
 pub use info::Info;
 #[cfg(feature = "eval")]
 pub(crate) use info::SCORED_PARTS;
@@ -78,6 +82,7 @@ pub(crate) use physics::ScratchUse;
 use crate::actuation::Reflexes;
 use crate::config::Config;
 use crate::model::Model;
+use crate::physics::State;
 use crate::spaces::NumpyRng;
 use action_delay::ActionDelay;
 use episode::Episode;
@@ -195,6 +200,11 @@ impl Env {
     /// An action of wrong length or with numbers that are not finite, which leaves the state untouched. A simulation that diverged, after
     /// which [`Env::reset`] is needed.
     pub fn step(&mut self, action: &[f32]) -> Result<Step<'_>, EnvError> {
+        self.watched_step(action, &mut |_| {})
+    }
+
+    /// Applies an action like [`Env::step`], and shows the state after each physics step to `watch`.
+    fn watched_step(&mut self, action: &[f32], watch: &mut dyn FnMut(&State)) -> Result<Step<'_>, EnvError> {
         // a diverged state has numbers that no later step may build on
         if !self.episode.ready {
             return Err(EnvError::NotReset);
@@ -216,7 +226,9 @@ impl Env {
         applied.extend_from_slice(action);
         task.before_step(applied);
         scene.set_action(applied, ActionTiming::InStep);
-        let stepped = scene.advance(frame_skip).and_then(|()| task.after_step(&mut scene));
+        let stepped = scene
+            .watched_advance(frame_skip, watch)
+            .and_then(|()| task.after_step(&mut scene));
         // some of the physics steps are done, so neither a repetition nor the next step would be right
         if let Err(e) = stepped {
             self.episode.ready = false;

@@ -73,6 +73,18 @@ impl std::fmt::Debug for Senses {
     }
 }
 
+/// Makes the eyes, if they are active.
+fn vision(blueprint: &Blueprint) -> Result<Option<Vision>, EnvError> {
+    let config = blueprint.config();
+    if !config.vision_active {
+        return Ok(None);
+    }
+    let mut renderer = blueprint.eyes_renderer()?;
+    renderer.set_threads(config.vision_threads as usize);
+    let eyes = Vision::with_renderer(blueprint.model(), renderer, config.eye_sizes());
+    Ok(Some(eyes.ok_or_else(|| missing_camera(EYES[0], "vision_active"))?))
+}
+
 impl Senses {
     pub(super) fn new(blueprint: &Blueprint, sizes: TaskSizes) -> Result<Self, EnvError> {
         let (config, model) = (blueprint.config(), blueprint.model());
@@ -82,14 +94,7 @@ impl Senses {
             reflexes,
             ..
         } = blueprint.tables().clone();
-        let vision = if config.vision_active {
-            let mut renderer = blueprint.eyes_renderer()?;
-            renderer.set_threads(config.vision_threads as usize);
-            let eyes = Vision::with_renderer(model, renderer, config.eye_sizes());
-            Some(eyes.ok_or_else(|| missing_camera(EYES[0], "vision_active"))?)
-        } else {
-            None
-        };
+        let vision = vision(blueprint)?;
         let views = vision.as_ref().map(Vision::views);
         let images = |eye: usize| EyeImages::new(config.vision_outputs, views.map_or(0, |views| views[eye].pixels()));
         let skin = blueprint.skin();
@@ -145,6 +150,13 @@ impl Senses {
     pub(super) fn use_tables(&mut self, tables: &SharedTables) {
         self.proprioception.clone_from(&tables.proprioception);
         self.vestibular.clone_from(&tables.vestibular);
+    }
+
+    /// Looks at the scene of a blueprint with the same eyes.
+    #[cfg(feature = "rapier")]
+    pub(super) fn use_eyes(&mut self, blueprint: &Blueprint) -> Result<(), EnvError> {
+        self.vision = vision(blueprint)?;
+        Ok(())
     }
 
     /// Returns whether a sense is observed.

@@ -14,6 +14,8 @@ mod caregiver;
 mod composed;
 mod configurations;
 mod eyes_at_once;
+#[cfg(feature = "rapier")]
+mod infant;
 #[cfg(feature = "eval")]
 mod invariants;
 #[cfg(all(feature = "eval", feature = "npz"))]

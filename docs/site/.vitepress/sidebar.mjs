@@ -36,7 +36,7 @@ export const sidebar = [
     text: "Ways in",
     items: [
       ...items("python", { index: "Python", "from-the-kit": "From the starter kit", "from-mimo": "From MIMo", programs: "Public programs", mujoco: "MuJoCo's names", learners: "Learners" }),
-      ...items("guide", { rust: "Rust" }),
+      ...items("guide", { rust: "Rust", "own-world": "In a world of your own" }),
       ...items("rust", { engine: "The engine alone" }),
       ...items("guide", { cli: "The command line", web: "In the browser" }),
       ...items("web", { npm: "The npm package" }),

@@ -116,4 +116,29 @@ impl Blueprint {
             ..self.clone()
         })
     }
+
+    /// Returns the same blueprint with a model in which slots stand for other bodies. Snapshots of both are exchangeable.
+    #[cfg(feature = "rapier")]
+    pub(crate) fn with_slots(&self, model: Model, adopt: impl FnOnce(&Model, &mut Params)) -> Result<Self, EnvError> {
+        let model = Arc::new(model);
+        let mut params = self.params.clone();
+        adopt(&model, &mut params);
+        let blueprint = Self {
+            engines: Arc::new(Engines::new(&self.config, &model)?),
+            tables: SharedTables::new(&self.config, &model)?,
+            model,
+            params,
+            surface: SkinAndScenery {
+                scenery: Arc::default(),
+                painting: RendererPool::default(),
+                gpu: Arc::default(),
+                ..self.surface.clone()
+            },
+            ..self.clone()
+        };
+        if blueprint.config.vision_active {
+            blueprint.scenery()?;
+        }
+        Ok(blueprint)
+    }
 }

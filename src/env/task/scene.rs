@@ -227,12 +227,18 @@ impl<'a> TaskScene<'a> {
     /// Makes physics steps, before each of which but the first the actuators are updated. Those of MIMo 3 are updated before the first,
     /// too, under `compat: reference`.
     pub(crate) fn advance(&mut self, steps: u32) -> Result<(), EnvError> {
+        self.watched_advance(steps, &mut |_| {})
+    }
+
+    /// Makes physics steps like [`TaskScene::advance`], and shows the state after each to `watch`.
+    pub(crate) fn watched_advance(&mut self, steps: u32, watch: &mut dyn FnMut(&State)) -> Result<(), EnvError> {
         let first = u32::from(self.config.mimo_version < CHEST || self.config.compat == Compat::Api);
         for k in 0..steps {
             if k >= first {
                 self.substep();
             }
             self.steps(1)?;
+            watch(self.state);
         }
         Ok(())
     }

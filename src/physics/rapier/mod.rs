@@ -1,8 +1,12 @@
-//! Rapier's own pipeline as a physics engine.
+//! MJCF models in Rapier.
 //!
-//! [`RapierEngine`] simulates a model behind the [`Engine`](mjcf_sim_physics::Engine) trait; [`Bridge`] puts a model into
-//! a Rapier world of your own, beside anything else. [`RapierScene`] is the other direction: a mirror of a state, for
-//! Rapier's ray casts and shape queries.
+//! - [`CoupledSimulation`] puts a model among the bodies of a Rapier world of your own. Our engine solves it, Rapier the rest, and contacts push
+//!   both ways. [`Coupling`] is its part without an engine.
+//! - [`RapierScene`] is a mirror of a state, for Rapier's ray casts and shape queries.
+//! - [`RapierEngine`] simulates a model with Rapier's own pipeline, behind the [`Engine`](mjcf_sim_physics::Engine) trait, and [`Bridge`] does so
+//!   in a world of yours. They are kept for comparison.
+//!
+//! # The engine on Rapier's pipeline
 //!
 //! | of the model | in Rapier |
 //! |---|---|
@@ -32,6 +36,7 @@ mod activation_tests;
 mod bodies;
 mod bridge;
 mod contacts;
+mod coupling;
 mod dispatcher;
 mod engine;
 mod hull;
@@ -48,6 +53,9 @@ use thiserror::Error;
 pub use bodies::RapierBodies;
 pub use bridge::Bridge;
 pub use contacts::ContactHooks;
+pub use coupling::{
+    CoupledSimulation, Coupling, CouplingError, CouplingOptions, CouplingSnapshot, Material, MaterialMap, WorldSets,
+};
 pub use dispatcher::ContactDispatcher;
 pub use engine::RapierEngine;
 pub use engine::RapierModel;
