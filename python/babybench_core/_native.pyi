@@ -493,6 +493,8 @@ class PhysicsModel:
         """Sets a whole number among the options."""
     def extras(self) -> dict[str, Any]:
         """Returns MuJoCo's arrays of what the engine keeps in another form."""
+    def shapes(self) -> dict[str, _Array]:
+        """Returns the arrays of meshes, height fields and skins under MuJoCo's names."""
 
 @final
 class PhysicsData:
@@ -524,6 +526,10 @@ class PhysicsData:
         hidden: Sequence[int],
     ) -> tuple[int, float] | None:
         """Returns the first geom that a ray meets, and the distance; ``hidden`` geoms and those of one body are left out."""
+    def distance(
+        self, geoms: tuple[int, int], most: float
+    ) -> tuple[float, tuple[float, float, float], tuple[float, float, float]] | None:
+        """Returns the distance of two geoms below ``most``, and the points between which it is measured, m."""
     def forward(self, groups: int) -> None:
         """Computes everything without advancing, and shows some groups of arrays."""
     def rne_post_constraint(self) -> None:
@@ -543,6 +549,8 @@ class PhysicsData:
         """Returns the Jacobian of the constraints in full, (nefc, nv)."""
     def inertia(self) -> _Floats:
         """Returns the joint-space inertia matrix in full, (nv, nv)."""
+    def tendon_jacobian(self) -> _Floats:
+        """Returns the rates of the lengths of tendons by velocities in full, (ntendon, nv)."""
 
 @final
 class PhysicsRenderer:
@@ -553,15 +561,16 @@ class PhysicsRenderer:
     def draw(
         self,
         data: PhysicsData,
-        camera: int | None,
-        free: tuple[tuple[float, ...], float, float, float],
+        camera: tuple[int | None, tuple[tuple[float, ...], float, float, float]],
         size: tuple[int, int],
         what: str,
+        markers: Sequence[tuple[int, Sequence[float], Sequence[float], Sequence[float], Sequence[float]]],
     ) -> _Array:
         """Draws ``rgb``, ``depth`` or ``segmentation`` of what the arrays of a state show.
 
-        ``camera`` is one of the model's, or nothing for the ``free`` one: the point that it looks at, distance, azimuth
-        and elevation. ``size`` is width and height.
+        ``camera`` is one of the model's, or nothing for the free one behind it: the point that it looks at, distance, azimuth
+        and elevation. ``size`` is width and height. ``markers`` come behind the geoms of the model: shape, size, position,
+        orientation, colour.
         """
 
 @final

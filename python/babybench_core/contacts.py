@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import Any
+from typing import Any, overload
 
 import numpy as np
 from numpy.typing import NDArray
@@ -54,8 +54,20 @@ class ContactList:
     def __len__(self) -> int:
         return len(self._columns["geom1"])
 
-    def __getitem__(self, index: int) -> Contact:
+    @overload
+    def __getitem__(self, index: int) -> Contact: ...
+
+    @overload
+    def __getitem__(self, index: slice) -> ContactList: ...
+
+    def __getitem__(self, index: int | slice) -> Contact | ContactList:
+        """Returns a contact, or the list of some."""
         count = len(self)
+        if isinstance(index, slice):
+            some = ContactList.__new__(ContactList)
+            some._columns = {name: column[index] for name, column in self._columns.items()}
+            some._forces = self._forces[index]
+            return some
         if not -count <= index < count:
             raise IndexError(f"contact {index}: there are {count}")
         return Contact(self._columns, index)

@@ -1,6 +1,6 @@
 //! Numbers of the library as arrays of NumPy, and back.
 
-use babybench::model::{BiasType, DynType, GainType, GeomType, JointType, ObjType, SensorType};
+use babybench::model::{BiasType, DynType, GainType, GeomType, JointType, ObjType, SameFrame, SensorType, TrnType};
 use numpy::{Element, PyArray1, PyArray2, PyArrayDyn, PyArrayMethods, PyUntypedArray, PyUntypedArrayMethods};
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::intern;
@@ -48,6 +48,9 @@ numbers! {
     ObjType => i32, |v| v.code();
     DynType => i32, |v| v.code();
     GainType => i32, |v| v.code();
+    TrnType => i32, |v| v.code();
+    SameFrame => u8, |v| v as u8;
+    f32 => f32, |v| v;
 }
 
 impl<T: Number> ToArray for [T] {

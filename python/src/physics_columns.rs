@@ -3,7 +3,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use babybench::model::{Arrays, EqualityKind};
+use babybench::model::{Arrays, EqualityKind, SameFrame, Wrap};
 use numpy::{PyArray1, PyArrayMethods};
 use pyo3::exceptions::{PyKeyError, PyValueError};
 use pyo3::prelude::*;
@@ -95,6 +95,18 @@ impl Cell for i32 {
     }
 }
 
+/// Bits.
+impl Cell for u32 {
+    fn read(&self, out: &mut Vec<f64>) {
+        out.push(f64::from(*self as i32));
+    }
+
+    fn write(&mut self, numbers: &[f64]) -> bool {
+        *self = numbers[0] as i32 as u32;
+        true
+    }
+}
+
 /// The number of an element, or -1.
 impl Cell for Option<usize> {
     fn read(&self, out: &mut Vec<f64>) {
@@ -104,6 +116,61 @@ impl Cell for Option<usize> {
     fn write(&mut self, numbers: &[f64]) -> bool {
         *self = (numbers[0] >= 0.0).then_some(numbers[0] as usize);
         numbers[0] >= -1.0
+    }
+}
+
+impl Cell for Vec<f32> {
+    fn read(&self, out: &mut Vec<f64>) {
+        out.extend(self.iter().map(|n| f64::from(*n)));
+    }
+
+    fn write(&mut self, numbers: &[f64]) -> bool {
+        for (own, number) in self.iter_mut().zip(numbers) {
+            *own = *number as f32;
+        }
+        true
+    }
+}
+
+impl Cell for SameFrame {
+    fn read(&self, out: &mut Vec<f64>) {
+        out.push(f64::from(*self as u8));
+    }
+
+    fn write(&mut self, numbers: &[f64]) -> bool {
+        let kinds = [Self::None, Self::Body, Self::Inertia, Self::BodyRot, Self::InertiaRot];
+        let found = kinds.into_iter().find(|kind| f64::from(*kind as u8) == numbers[0]);
+        found.is_some_and(|kind| {
+            *self = kind;
+            true
+        })
+    }
+}
+
+/// The number that a tendon has of what it runs along: a coefficient, a divisor; others do not change.
+impl Cell for Wrap {
+    fn read(&self, out: &mut Vec<f64>) {
+        out.push(wrap_number(self));
+    }
+
+    fn write(&mut self, numbers: &[f64]) -> bool {
+        match self {
+            Self::Joint { coef, .. } => *coef = numbers[0],
+            Self::Pulley { divisor } => *divisor = numbers[0],
+            _ => return wrap_number(self) == numbers[0],
+        }
+        true
+    }
+}
+
+/// Returns MuJoCo's parameter of what a tendon runs along.
+pub fn wrap_number(wrap: &Wrap) -> f64 {
+    let side = |side: Option<usize>| side.map_or(-1.0, |site| site as f64);
+    match *wrap {
+        Wrap::Joint { coef, .. } => coef,
+        Wrap::Pulley { divisor } => divisor,
+        Wrap::Site { .. } => 0.0,
+        Wrap::Sphere { side: site, .. } | Wrap::Cylinder { side: site, .. } => side(site),
     }
 }
 
@@ -182,14 +249,21 @@ fn visit(arrays: &mut Arrays, mut work: impl FnMut(Column, Vec<&mut dyn Cell>)) 
             mat_rgba => materials.rgba, mat_specular => materials.specular, mat_shininess => materials.shininess,
             mat_reflectance => materials.reflectance, mat_emission => materials.emission, mat_texrepeat => materials.texrepeat,
             light_ambient => lights.ambient, light_diffuse => lights.diffuse, light_specular => lights.specular,
-            light_attenuation => lights.attenuation, light_cutoff => lights.cutoff, light_exponent => lights.exponent,
+            hfield_data => hfields.data, light_attenuation => lights.attenuation, light_cutoff => lights.cutoff, light_exponent => lights.exponent,
         }
         Whole {
+            geom_contype => geom_contype, geom_conaffinity => geom_conaffinity, geom_priority => geom_priority,
+            jnt_group => jnt_group, actuator_group => actuator_group,
             geom_group => geom_group, site_group => site_group, tendon_group => tendon_group,
             geom_matid below materials => geom_matid, site_matid below materials => site_matid,
             tendon_matid below materials => tendon_matid,
         }
-        Byte { eq_active0 => eq_active0, mat_texuniform => materials.texuniform, light_active => lights.active }
+        Byte {
+            body_sameframe => body_sameframe, geom_sameframe => geom_sameframe, site_sameframe => site_sameframe,
+            tendon_limited => tendon_limited, jnt_actfrclimited => jnt_actfrclimited,
+            actuator_ctrllimited => actuator_ctrllimited, actuator_forcelimited => actuator_forcelimited,
+            actuator_actlimited => actuator_actlimited, eq_active0 => eq_active0, mat_texuniform => materials.texuniform, light_active => lights.active,
+        }
     }
     let mut roles: Vec<_> = arrays
         .materials
@@ -203,6 +277,14 @@ fn visit(arrays: &mut Arrays, mut work: impl FnMut(Column, Vec<&mut dyn Cell>)) 
         below: textures,
     };
     work(texid, cells);
+    let wraps = arrays.tendon_wrap.iter_mut().flatten();
+    let cells = wraps.map(|wrap| wrap as &mut dyn Cell).collect();
+    let prm = Column {
+        name: "wrap_prm",
+        store: Store::Double,
+        below: usize::MAX,
+    };
+    work(prm, cells);
     let vis = &mut arrays.vis;
     for (name, store, cell) in [
         ("vis_fovy", Store::Single, &mut vis.fovy as &mut dyn Cell),

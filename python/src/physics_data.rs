@@ -3,7 +3,9 @@
 use std::sync::{Arc, Mutex, MutexGuard, TryLockError};
 
 use babybench::model::Model;
-use babybench::physics::{Engine, EngineError, SoftEngine, State, ray, rne_post_constraint};
+use babybench::physics::collision::placed;
+use babybench::physics::contact::{ContactOptions, Scratch, distance};
+use babybench::physics::{Engine, EngineError, SoftEngine, State, Topology, ray, rne_post_constraint};
 use babybench::render::{FreeCamera, ImageBuffers, Poses, RenderRequest, Renderer, View};
 use numpy::{PyArray1, PyArrayMethods};
 use pyo3::exceptions::{PyIndexError, PyRuntimeError, PyValueError};
@@ -13,6 +15,7 @@ use pyo3::types::PyDict;
 use crate::arrays::{ToArray, shaped};
 use crate::errors::{IntoException, detached};
 use crate::physics_fields::{COMPUTED, CONSTRAINTS, GROUPS, INPUT, POST, part, read_inputs, state_layout, write_state};
+use crate::physics_markers::{Marker, Placed};
 use crate::physics_model::{PhysicsModel, params};
 use crate::state;
 
@@ -29,6 +32,9 @@ impl IntoException for EngineError {
         }
     }
 }
+
+/// A distance, and the points between which it is measured, m.
+type Span = (f64, [f64; 3], [f64; 3]);
 
 /// The contents of a Python state.
 struct Inner {
@@ -70,6 +76,11 @@ impl PhysicsData {
         let mut guard = self.guard()?;
         if guard.version != now.version {
             guard.engine = now.soft.engine();
+            // what never moves is placed once for a state, and may be elsewhere now
+            let mut state = guard.engine.new_state();
+            state.copy_dynamic_from(&guard.state);
+            guard.state = state;
+            guard.aside = None;
             guard.version = now.version;
             guard.model = now.model;
         }
@@ -230,6 +241,33 @@ impl PhysicsData {
         Ok(hit.map(|hit| (hit.geom, hit.distance)))
     }
 
+    /// Returns the distance of two geoms where the arrays show them, as far as it is below `most`, and the points between which it is
+    /// measured, m.
+    fn distance(&self, py: Python<'_>, geoms: [usize; 2], most: f64) -> PyResult<Option<Span>> {
+        let now = self.model.get().now(py)?;
+        let mut guard = self.guard()?;
+        let inner = &mut *guard;
+        let memory = self.memory.bind(py).try_readonly()?;
+        let shown = memory.as_slice()?;
+        let (places, turns) = (
+            part(&inner.state, shown, "geom_xpos").as_chunks::<3>().0.to_vec(),
+            part(&inner.state, shown, "geom_xmat").as_chunks::<9>().0.to_vec(),
+        );
+        inner.state.geom_xpos.copy_from_slice(&places);
+        inner.state.geom_xmat.copy_from_slice(&turns);
+        inner.state.params = params(&now.model, self.active.bind(py).try_readonly()?.as_slice()?).into();
+        let opt = &now.model.opt;
+        let options = ContactOptions {
+            ccd_tolerance: opt.ccd_tolerance,
+            ccd_iterations: opt.ccd_iterations,
+            nativeccd: opt.flags.nativeccd,
+            ..ContactOptions::default()
+        };
+        let [first, second] = geoms.map(|geom| placed(&now.model, &inner.state, geom));
+        let span = distance(&first, &second, most, &options, &mut Scratch::new(), &mut Vec::new());
+        Ok(span.map(|span| (span.dist, span.from, span.to)))
+    }
+
     /// Computes everything without advancing, and shows some groups of arrays. Without constraints among them, contacts and their
     /// forces stay those of before; without accelerations, the solver's start does.
     fn forward(&self, py: Python<'_>, groups: u32) -> PyResult<()> {
@@ -336,6 +374,20 @@ impl PhysicsData {
         shaped(py, &rows.collect::<Vec<_>>(), &[count, nv])
     }
 
+    /// Returns the rates of the lengths of tendons by velocities in full, (ntendon, nv).
+    fn tendon_jacobian<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        let guard = self.guard()?;
+        let (model, topology) = (&guard.model, Topology::new(&guard.model));
+        let mut full = vec![0.0; model.ntendon() * model.nv];
+        for (tendon, row) in full.chunks_exact_mut(model.nv.max(1)).enumerate() {
+            let rates = &guard.state.ten_j[topology.tendons.range(tendon)];
+            for (&dof, rate) in topology.tendons.row(tendon).iter().zip(rates) {
+                row[dof as usize] = *rate;
+            }
+        }
+        shaped(py, &full, &[model.ntendon(), model.nv])
+    }
+
     /// Returns the joint-space inertia matrix in full, (nv, nv).
     fn inertia<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let guard = self.guard()?;
@@ -355,10 +407,14 @@ pub struct PhysicsRenderer {
     shown: Option<[Vec<bool>; 4]>,
 }
 
-/// A renderer, and the number of the look that it draws.
+/// A free camera: the point that it looks at, distance, azimuth, elevation.
+type FreeView = ([f64; 3], f64, f64, f64);
+
+/// A renderer, the number of the look that it draws, and the markers.
 struct Drawing {
     renderer: Renderer,
     look: u64,
+    markers: Vec<Marker>,
 }
 
 #[pymethods]
@@ -367,10 +423,14 @@ impl PhysicsRenderer {
     #[new]
     #[pyo3(signature = (model, shown=None))]
     fn new(py: Python<'_>, model: Py<PhysicsModel>, shown: Option<[Vec<bool>; 4]>) -> PyResult<Self> {
-        let (scenery, look) = model.get().scenery(py, None, shown.as_ref())?;
+        let (scenery, look) = model.get().scenery(py, None, shown.as_ref(), &[])?;
         let renderer = Renderer::cpu(scenery);
         Ok(Self {
-            renderer: Mutex::new(Drawing { renderer, look }),
+            renderer: Mutex::new(Drawing {
+                renderer,
+                look,
+                markers: Vec::new(),
+            }),
             textures: model.get().textures(),
             model,
             shown,
@@ -378,18 +438,18 @@ impl PhysicsRenderer {
     }
 
     /// Draws what the arrays of a state show, from a camera or from a free one (point, distance, azimuth, elevation): colours
-    /// (height, width, 3), distances or ids of geoms (height, width).
+    /// (height, width, 3), distances or ids of geoms (height, width). Markers come behind the geoms of the model.
     fn draw<'py>(
         &self,
         py: Python<'py>,
         data: &PhysicsData,
-        camera: Option<usize>,
-        free: ([f64; 3], f64, f64, f64),
+        camera: (Option<usize>, FreeView),
         size: [usize; 2],
         what: &str,
+        markers: Vec<Placed>,
     ) -> PyResult<Bound<'py, PyAny>> {
         let [width, height] = size;
-        let (lookat, distance, azimuth, elevation) = free;
+        let (camera, (lookat, distance, azimuth, elevation)) = camera;
         let camera_pose = FreeCamera {
             lookat,
             distance,
@@ -411,10 +471,18 @@ impl PhysicsRenderer {
         let state = &guard.state;
         let vectors = |name| part(state, memory, name).as_chunks::<3>().0;
         let matrices = |name| part(state, memory, name).as_chunks::<9>().0;
+        let marked: Vec<Marker> = markers.iter().map(Marker::new).collect::<PyResult<_>>()?;
+        let places = [vectors("geom_xpos"), &markers.iter().map(|m| m.2).collect::<Vec<_>>()].concat();
+        let turns = [matrices("geom_xmat"), &markers.iter().map(|m| m.3).collect::<Vec<_>>()].concat();
+        let sizes = [
+            &guard.model.geom_size[..],
+            &marked.iter().map(|m| m.size).collect::<Vec<_>>(),
+        ]
+        .concat();
         let poses = Poses {
-            geom_xpos: vectors("geom_xpos"),
-            geom_xmat: matrices("geom_xmat"),
-            geom_size: &guard.model.geom_size,
+            geom_xpos: &places,
+            geom_xmat: &turns,
+            geom_size: &sizes,
             site_xpos: vectors("site_xpos"),
             site_xmat: matrices("site_xmat"),
             ten_wrapadr: &state.ten_wrapadr,
@@ -432,13 +500,17 @@ impl PhysicsRenderer {
         let mut guard_of_renderer = self.renderer.try_lock().map_err(|_| {
             PyRuntimeError::new_err("another thread is using the renderer: give each thread one of its own")
         })?;
-        if guard_of_renderer.look != look {
+        if guard_of_renderer.look != look || guard_of_renderer.markers != marked {
             let (scenery, look) = self
                 .model
                 .get()
-                .scenery(py, Some(&self.textures), self.shown.as_ref())?;
+                .scenery(py, Some(&self.textures), self.shown.as_ref(), &marked)?;
             let renderer = Renderer::cpu(scenery);
-            *guard_of_renderer = Drawing { renderer, look };
+            *guard_of_renderer = Drawing {
+                renderer,
+                look,
+                markers: marked,
+            };
         }
         let renderer = &mut guard_of_renderer.renderer;
         let request = [RenderRequest { poses, view }];

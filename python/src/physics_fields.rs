@@ -168,23 +168,26 @@ fields! { model_fields, model_fields_mut, Arrays;
         opt_density = opt.density, opt_viscosity = opt.viscosity, opt_wind = opt.wind, opt_magnetic = opt.magnetic,
         body_pos = body_pos, body_quat = body_quat, body_mass = body_mass, body_inertia = body_inertia, body_invweight0 = body_invweight0,
         jnt_range = jnt_range, jnt_margin = jnt_margin, jnt_stiffness = jnt_stiffness, jnt_solref = jnt_solref,
-        jnt_solimp = jnt_solimp,
+        jnt_solimp = jnt_solimp, jnt_pos = jnt_pos, jnt_axis = jnt_axis, jnt_actfrcrange = jnt_actfrcrange,
         dof_armature = dof_armature, dof_damping = dof_damping, dof_frictionloss = dof_frictionloss,
         dof_invweight0 = dof_invweight0, dof_solref = dof_solref, dof_solimp = dof_solimp,
         qpos0 = qpos0, qpos_spring = qpos_spring,
         geom_size = geom_size, geom_rbound = geom_rbound, geom_pos = geom_pos, geom_quat = geom_quat,
         geom_friction = geom_friction, geom_solmix = geom_solmix, geom_solref = geom_solref, geom_solimp = geom_solimp,
         geom_margin = geom_margin, geom_gap = geom_gap,
-        site_pos = site_pos, site_quat = site_quat, cam_pos = cam_pos, cam_quat = cam_quat,
+        site_pos = site_pos, site_size = site_size, site_quat = site_quat, cam_pos = cam_pos, cam_quat = cam_quat,
         pair_solref = pair_solref, pair_solreffriction = pair_solreffriction, pair_solimp = pair_solimp,
         pair_friction = pair_friction, pair_margin = pair_margin, pair_gap = pair_gap,
         eq_solref = eq_solref, eq_solimp = eq_solimp,
         tendon_range = tendon_range, tendon_margin = tendon_margin, tendon_solref_lim = tendon_solref_lim,
         tendon_solimp_lim = tendon_solimp_lim, tendon_lengthspring = tendon_lengthspring,
         tendon_stiffness = tendon_stiffness, tendon_damping = tendon_damping, tendon_invweight0 = tendon_invweight0,
+        tendon_frictionloss = tendon_frictionloss, tendon_solref_fri = tendon_solref_fri, tendon_solimp_fri = tendon_solimp_fri,
+        tendon_length0 = tendon_length0,
         actuator_ctrlrange = actuator_ctrlrange, actuator_forcerange = actuator_forcerange,
         actuator_actrange = actuator_actrange, actuator_gear = actuator_gear6, actuator_dynprm = actuator_dynprm,
-        actuator_gainprm = actuator_gainprm, actuator_biasprm = actuator_biasprm;
+        actuator_gainprm = actuator_gainprm, actuator_biasprm = actuator_biasprm,
+        actuator_acc0 = actuator_acc0, actuator_length0 = actuator_length0, actuator_lengthrange = actuator_lengthrange;
 }
 
 /// Returns the name, the group and the shape of each field of a state, in the order of the memory.

@@ -7,7 +7,7 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use babybench::Model;
 use babybench::assets::{AssetSource, FileSystem};
 use babybench::mjcf_loader::{LoadError, load, load_str};
-use babybench::model::{Arrays, Keyframe, SensorType, Texture, TextureType, Wrap};
+use babybench::model::{Arrays, Keyframe, SameFrame, SensorType, Texture, TextureType, Wrap};
 use babybench::physics::{Params, SoftModel, SoftOptions, compile};
 use babybench::render::{RenderError, Scenery};
 use numpy::{PyArray1, PyArrayMethods};
@@ -21,7 +21,9 @@ use crate::given_files::GivenFiles;
 use crate::model::{self, table};
 use crate::physics_columns::{Contents, Memory};
 use crate::physics_fields::{model_layout, read_model, write_model};
+use crate::physics_markers::Marker;
 use crate::physics_options::{settings, with_option};
+use crate::physics_shapes::shapes;
 use crate::scene::extras;
 
 impl IntoException for LoadError {
@@ -39,6 +41,10 @@ impl IntoException for RenderError {
 table! { ARRAYS, array, Arrays,
     body_gravcomp sensor_needstage geom_dataid geom_fluid body_mocapid body_user jnt_user geom_user site_user actuator_user sensor_user tendon_user cam_pos0 cam_poscom0 cam_mat0
     cam_targetbodyid tendon_lengthspring tendon_stiffness tendon_damping
+    geom_aabb jnt_actgravcomp jnt_actfrclimited jnt_actfrcrange
+    cam_resolution cam_sensorsize cam_intrinsic
+    tendon_frictionloss tendon_solref_fri tendon_solimp_fri tendon_length0 tendon_width
+    actuator_trntype actuator_cranklength actuator_group actuator_acc0 actuator_length0
 }
 
 /// The parts that change when a program writes into the arrays of a model.
@@ -79,9 +85,22 @@ fn soft(model: &Arc<Model>) -> SoftModel {
     SoftModel::new(model.clone(), options)
 }
 
+/// Lets geoms and sites that are turned as their bodies follow these, as in MuJoCo, also where their frames are the inertial ones: a position
+/// that a program writes counts then.
+fn level_frames(arrays: &mut Arrays) {
+    let geoms = arrays.geom_sameframe.iter_mut().zip(&arrays.geom_quat);
+    let sites = arrays.site_sameframe.iter_mut().zip(&arrays.site_quat);
+    for (frame, quat) in geoms.chain(sites) {
+        let level = SameFrame::of([0.0; 3], *quat, [0.0; 3], *quat) == SameFrame::Body;
+        if *frame == SameFrame::Inertia && level {
+            *frame = SameFrame::BodyRot;
+        }
+    }
+}
+
 impl PhysicsModel {
     fn made(py: Python<'_>, model: Model, assets: Arc<dyn AssetSource>) -> PyResult<Self> {
-        let model = Arc::new(model);
+        let model = Arc::new(model.edited(level_frames));
         let (seen, columns_seen) = (write_model(&model), Contents::of(&model));
         Ok(Self {
             memory: PyArray1::from_slice(py, &seen).unbind(),
@@ -161,12 +180,14 @@ impl PhysicsModel {
     }
 
     /// Returns what is drawn of the model, and the number of its look. Textures that materials of the model have now are replaced by
-    /// `textures`, if there are any: MuJoCo reads them when a renderer is made. `shown` says what is drawn in place of MuJoCo's default groups.
+    /// `textures`, if there are any: MuJoCo reads them when a renderer is made. `shown` says what is drawn in place of MuJoCo's default groups. `markers`
+    /// come behind the geoms of the model.
     pub fn scenery(
         &self,
         py: Python<'_>,
         textures: Option<&[Option<usize>]>,
         shown: Option<&[Vec<bool>; 4]>,
+        markers: &[Marker],
     ) -> PyResult<(Arc<Scenery>, u64)> {
         self.now(py)?;
         let (known, model, looks) = {
@@ -174,10 +195,10 @@ impl PhysicsModel {
             (current.scenery.clone(), current.model.clone(), current.looks)
         };
         let same = textures.is_none_or(|given| model.materials.iter().map(|m| &m.texture).eq(given));
-        if let Some(scenery) = known.filter(|_| same && shown.is_none()) {
+        if let Some(scenery) = known.filter(|_| same && shown.is_none() && markers.is_empty()) {
             return Ok((scenery, looks));
         }
-        if !same || shown.is_some() {
+        if !same || shown.is_some() || !markers.is_empty() {
             let older = model.edited(|arrays| {
                 for (material, texture) in arrays.materials.iter_mut().zip(textures.unwrap_or_default()) {
                     material.texture = *texture;
@@ -185,6 +206,7 @@ impl PhysicsModel {
                 if let Some(shown) = shown {
                     show(arrays, shown);
                 }
+                markers.iter().for_each(|marker| marker.add(arrays));
             });
             return Ok((Arc::new(detached(py, || Scenery::new(&older, &*self.assets))?), looks));
         }
@@ -293,6 +315,11 @@ impl PhysicsModel {
         }
     }
 
+    /// Returns the arrays of meshes, height fields and skins under MuJoCo's names.
+    fn shapes<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        shapes(py, &self.current().model.clone())
+    }
+
     /// Returns the names of all elements, by kind.
     fn names<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let m = self.current().model.clone();
@@ -347,10 +374,9 @@ impl PhysicsModel {
         let wraps: Vec<_> = m.tendon_wrap.iter().flatten().collect();
         let numbers: Vec<usize> = m.tendon_wrap.iter().map(Vec::len).collect();
         all.set_item("tendon_num", numbers[..].to_array(py)?)?;
-        let wraps: Vec<(i32, i32, f64)> = wraps.into_iter().map(wrap).collect();
+        let wraps: Vec<(i32, i32)> = wraps.into_iter().map(wrap).collect();
         all.set_item("wrap_type", PyArray1::from_iter(py, wraps.iter().map(|w| w.0)))?;
         all.set_item("wrap_objid", PyArray1::from_iter(py, wraps.iter().map(|w| w.1)))?;
-        all.set_item("wrap_prm", PyArray1::from_iter(py, wraps.iter().map(|w| w.2)))?;
         let stages = m.sensor_datatype.iter().map(|kind| *kind as i32);
         all.set_item("sensor_datatype", PyArray1::from_iter(py, stages))?;
         let dims = m.sensor_dim.iter().map(|dim| *dim as i32);
@@ -377,15 +403,14 @@ fn pattern_numbers(texture: &Texture) -> Option<usize> {
     (!image).then_some(texture.width * height * texture.channels)
 }
 
-/// Returns MuJoCo's type, object and parameter of what a tendon runs along.
-fn wrap(wrap: &Wrap) -> (i32, i32, f64) {
-    let side = |side: Option<usize>| side.map_or(-1.0, |site| site as f64);
+/// Returns MuJoCo's type and object of what a tendon runs along.
+fn wrap(wrap: &Wrap) -> (i32, i32) {
     match *wrap {
-        Wrap::Joint { joint, coef } => (1, joint as i32, coef),
-        Wrap::Pulley { divisor } => (2, -1, divisor),
-        Wrap::Site { site } => (3, site as i32, 0.0),
-        Wrap::Sphere { geom, side: site } => (4, geom as i32, side(site)),
-        Wrap::Cylinder { geom, side: site } => (5, geom as i32, side(site)),
+        Wrap::Joint { joint, .. } => (1, joint as i32),
+        Wrap::Pulley { .. } => (2, -1),
+        Wrap::Site { site } => (3, site as i32),
+        Wrap::Sphere { geom, .. } => (4, geom as i32),
+        Wrap::Cylinder { geom, .. } => (5, geom as i32),
     }
 }
 

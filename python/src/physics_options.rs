@@ -59,6 +59,7 @@ pub fn settings<'py>(py: Python<'py>, m: &Model) -> PyResult<Bound<'py, PyDict>>
         ("nmesh", m.nmesh()),
         ("nhfield", m.nhfield()),
         ("nskin", m.nskin()),
+        ("nflex", m.nflex()),
     ] {
         settings.set_item(name, size)?;
     }

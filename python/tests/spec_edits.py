@@ -243,7 +243,8 @@ def differences(mine: Any, its: Any, limit: float = 0.0) -> list[str]:
     found = []
     for name in dir(mine):
         value = getattr(mine, name)
-        if callable(value) or name in LEFT:
+        # names of pairs and excludes are not kept
+        if callable(value) or name in LEFT or name in ("names", "nnames") or name.startswith("name_"):
             continue
         other = getattr(its, name)
         if not isinstance(other, np.ndarray):

@@ -6,6 +6,7 @@ import importlib
 import json
 import subprocess
 import sys
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -264,7 +265,8 @@ def test_numbers_written_into_a_model_change_both_alike() -> None:
         "actuator_gainprm",
         "geom_solref",
     )
-    for name in (*names, "geom_size", "body_pos", "qpos_spring", "jnt_range", "dof_frictionloss"):
+    more = ("jnt_pos", "jnt_axis", "jnt_actfrcrange", "wrap_prm", "actuator_length0", "tendon_frictionloss")
+    for name in (*names, "geom_size", "body_pos", "qpos_spring", "jnt_range", "dof_frictionloss", *more):
         both = Both(ALL)
         for model in (both.ours, both.theirs):
             getattr(model, name)[...] *= 1.05
@@ -275,6 +277,26 @@ def test_numbers_written_into_a_model_change_both_alike() -> None:
             if step == 20:
                 both.ours.opt.integrator = both.theirs.opt.integrator = 0
                 both.ours.opt.disableflags = both.theirs.opt.disableflags = int(theirs.mjtDisableBit.mjDSBL_EULERDAMP)
+            both.its.ctrl[:] = both.mine.ctrl[:] = np.sin(step)
+            both.call("mj_step")
+            both.compare(1e-8)
+
+
+def test_flags_and_bits_written_into_a_model_change_both_alike() -> None:
+    changes: dict[str, Callable[[Any], Any]] = {
+        "geom_contype": lambda bits: bits * 3 % 4,
+        "geom_conaffinity": lambda bits: bits * 3 % 4,
+        "geom_priority": lambda values: np.arange(len(values)),
+        **dict.fromkeys(("tendon_limited", "actuator_ctrllimited", "actuator_forcelimited"), lambda flags: 1 - flags),
+        **dict.fromkeys(("body_sameframe", "geom_sameframe", "site_sameframe"), np.zeros_like),
+    }
+    for name, change in changes.items():
+        both = Both(ALL)
+        for model in (both.ours, both.theirs):
+            getattr(model, name)[...] = change(getattr(model, name))
+        both.call("mj_resetDataKeyframe", 0)
+        for step in range(40):
+            both.teach()
             both.its.ctrl[:] = both.mine.ctrl[:] = np.sin(step)
             both.call("mj_step")
             both.compare(1e-8)

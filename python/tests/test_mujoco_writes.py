@@ -175,3 +175,20 @@ def test_a_copy_of_a_model_has_what_was_written() -> None:
     other = copy.copy(pictures.model)
     pictures.model.geom_rgba[0] = 0, 1, 0, 1
     assert other.geom_rgba[0].tolist() == [0, 0, 1, 1]
+
+
+def test_what_never_moves_is_placed_anew_where_it_is_written() -> None:
+    model = mujoco.MjModel.from_xml_string(
+        """<mujoco><worldbody><geom name="goal" size=".1" pos="1 0 0"/><body name="post"><site name="top" size=".1"/></body>
+        <body pos="0 0 1"><freejoint/><geom size=".1"/></body></worldbody></mujoco>"""
+    )
+    data = mujoco.MjData(model)
+    mujoco.mj_step(model, data)
+    model.geom_pos[0] = [0, 2, 0]
+    model.body_pos[1] = [0, 0, 3]
+    mujoco.mj_forward(model, data)
+    assert data.geom("goal").xpos.tolist() == [0, 2, 0]
+    assert data.site("top").xpos.tolist() == [0, 0, 3]
+    model.geom_pos[0, 0] = 5
+    mujoco.mj_kinematics(model, data)
+    assert data.geom("goal").xpos.tolist() == [5, 2, 0]

@@ -18,29 +18,46 @@ from __future__ import annotations
 
 from typing import NoReturn
 
+from babybench_core.mujoco import callbacks as _callbacks
 from babybench_core.mujoco import constants as _constants
 from babybench_core.mujoco import enums as _enums
+from babybench_core.mujoco import finite_differences as _differences
 from babybench_core.mujoco import functions as _functions
+from babybench_core.mujoco import inverse as _inverse
 from babybench_core.mujoco import jacobians as _jacobians
 from babybench_core.mujoco import maths as _maths
+from babybench_core.mujoco import more_constants as _numbers
 from babybench_core.mujoco import more_enums as _more_enums
+from babybench_core.mujoco import more_maths as _more_maths
 from babybench_core.mujoco import rays as _rays
+from babybench_core.mujoco import saving as _saving
+from babybench_core.mujoco import scene as _scene
 from babybench_core.mujoco import spec as _spec
+from babybench_core.mujoco import structs as _structs
 from babybench_core.mujoco import vectors as _vectors
+from babybench_core.mujoco.callbacks import *  # noqa: F403
 from babybench_core.mujoco.constants import *  # noqa: F403
 from babybench_core.mujoco.data import MjData
 from babybench_core.mujoco.enums import *  # noqa: F403
+from babybench_core.mujoco.finite_differences import *  # noqa: F403
 from babybench_core.mujoco.functions import *  # noqa: F403
 from babybench_core.mujoco.installing import install, uninstall
+from babybench_core.mujoco.inverse import *  # noqa: F403
 from babybench_core.mujoco.jacobians import *  # noqa: F403
 from babybench_core.mujoco.maths import *  # noqa: F403
+from babybench_core.mujoco.missing import hint as _hint
 from babybench_core.mujoco.model import MjModel
+from babybench_core.mujoco.more_constants import *  # noqa: F403
 from babybench_core.mujoco.more_enums import *  # noqa: F403
+from babybench_core.mujoco.more_maths import *  # noqa: F403
 from babybench_core.mujoco.options import MjOption
 from babybench_core.mujoco.rays import *  # noqa: F403
 from babybench_core.mujoco.renderer import MjvCamera, Renderer, mjv_defaultCamera, mjv_defaultFreeCamera
+from babybench_core.mujoco.saving import *  # noqa: F403
+from babybench_core.mujoco.scene import *  # noqa: F403
 from babybench_core.mujoco.scene_option import MjvOption, mjv_defaultOption
 from babybench_core.mujoco.spec import *  # noqa: F403
+from babybench_core.mujoco.structs import *  # noqa: F403
 from babybench_core.mujoco.vectors import *  # noqa: F403
 
 from . import rollout, viewer
@@ -51,11 +68,6 @@ stands_in = True
 __version__ = "3.3.0"
 """The version of MuJoCo whose names and meaning are kept."""
 
-mjMINVAL = 1e-15
-mjMAXVAL = 1e10
-mjPI = 3.141592653589793
-mjNREF, mjNIMP, mjNEQDATA, mjNDYN, mjNGAIN, mjNBIAS = 2, 5, 11, 10, 10, 10
-
 __all__ = [
     "MjData",
     "MjModel",
@@ -65,15 +77,6 @@ __all__ = [
     "Renderer",
     "__version__",
     "install",
-    "mjMAXVAL",
-    "mjMINVAL",
-    "mjNBIAS",
-    "mjNDYN",
-    "mjNEQDATA",
-    "mjNGAIN",
-    "mjNIMP",
-    "mjNREF",
-    "mjPI",
     "mjv_defaultCamera",
     "mjv_defaultFreeCamera",
     "mjv_defaultOption",
@@ -87,6 +90,14 @@ __all__ += (
     + _enums.__all__
     + _more_enums.__all__
     + _functions.__all__
+    + _differences.__all__
+    + _inverse.__all__
+    + _numbers.__all__
+    + _structs.__all__
+    + _callbacks.__all__
+    + _more_maths.__all__
+    + _scene.__all__
+    + _saving.__all__
     + _jacobians.__all__
     + _maths.__all__
     + _spec.__all__
@@ -96,7 +107,4 @@ __all__ += (
 
 
 def __getattr__(name: str) -> NoReturn:
-    raise AttributeError(
-        f"babybench.mujoco has no {name}: `pip install mujoco` and `import mujoco` have everything. "
-        f"It has {', '.join(__all__)}"
-    )
+    raise AttributeError(f"babybench.mujoco has no {name}: {_hint(name)}")

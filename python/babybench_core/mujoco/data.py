@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, NoReturn
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,8 +10,12 @@ from numpy.typing import NDArray
 from .. import _native
 from ..contacts import ContactList
 from ..named import KINDS, PREFIX, Named, accessor, span
-from .model import MjModel, is_compiled, matrix_places, views
+from .derived import matrix_places
+from .enums import mjtSensor
+from .model import Fields, MjModel, is_compiled, views
+from .model_fields import EMPTY, NOT_OF_STATES, Absent, empty
 from .options import MISSING
+from .structs import StatList
 
 _BODY = (
     "xpos",
@@ -30,11 +34,17 @@ _BODY = (
 _JOINT = ("xanchor", "xaxis")
 _DOF = ("qvel", "qacc", "qacc_warmstart", "qacc_smooth", "cdof", "cdof_dot")
 _ROWS = ("type", "id", "pos", "margin", "R", "D", "vel", "aref", "force")
+_INPUTS = (
+    *("qpos", "qvel", "act", "ctrl", "qfrc_applied", "xfrc_applied", "mocap_pos", "mocap_quat", "qacc_warmstart"),
+)
 _COUNTED = {"ne": (0,), "nf": (1, 2), "nl": (3, 4)}
 """Counts that MuJoCo keeps of the rows of constraints, by their types."""
 
 
-class MjData(Named):
+_SIMPLEST = "<mujoco><worldbody><body><geom size='1'/></body></worldbody></mujoco>"
+
+
+class MjData(Named, metaclass=Fields):
     """A state of a model, under the names and in the shapes of MuJoCo's ``MjData``.
 
     The arrays are the same memory for as long as the state lives: what is written into ``qpos``, ``qvel``, ``act``,
@@ -55,13 +65,19 @@ class MjData(Named):
         native = _native.PhysicsData(model._own)
         arrays = views(native.memory, [(name, shape) for name, _, shape in native.layout])
         clock = arrays.pop("time")
-        arrays.update(userdata=np.zeros(model.nuserdata))
+        arrays.update(
+            userdata=np.zeros(model.nuserdata),
+            energy=np.zeros(2),
+            qfrc_inverse=np.zeros(model.nv),
+            solver_fwdinv=np.zeros(2),
+        )
         own = self.__dict__
         own.update(arrays)
         own.update(
             _own=native, _arrays={**arrays, "eq_active": native.eq_active}, _clock=clock, eq_active=native.eq_active
         )
         own.update(model=model, _names=model._names, _numbers=model._numbers, _start=None)
+        own.update(_subtrees=(np.zeros((model.nbody, 3)), np.zeros((model.nbody, 3))), warning=StatList(8))
 
     @property
     def time(self) -> float:
@@ -102,10 +118,7 @@ class MjData(Named):
     @property
     def ten_J(self) -> NDArray[np.float64]:
         """Rates of the lengths of tendons by velocities, (ntendon, nv)."""
-        m = self.model
-        rates = np.zeros((m.ntendon, m.nv))
-        tendons = np.repeat(np.arange(m.ntendon), m.tendon_num)
-        np.add.at(rates, (tendons, m.jnt_dofadr[m.wrap_objid]), m.wrap_prm)
+        rates: NDArray[np.float64] = self._own.tendon_jacobian()
         return rates
 
     def __getattr__(self, name: str) -> Any:
@@ -121,6 +134,10 @@ class MjData(Named):
             return self._own.jacobian().reshape(-1)
         if name.startswith("efc_") and name[4:] in _ROWS:
             return self._own.rows()[name[4:]]
+        if name in EMPTY:
+            return empty(name, self.model.nflex, "data")
+        if name in NOT_OF_STATES:
+            return Absent(f"data.{name}")
         if name in _COUNTED:
             return int(np.isin(self._own.rows()["type"], _COUNTED[name]).sum())
         raise AttributeError(MISSING.format(name=f"data.{name}"))
@@ -135,25 +152,83 @@ class MjData(Named):
             getattr(self, name)
             raise AttributeError(f"data.{name} is computed, and cannot be set")
 
+    @property
+    def subtree_linvel(self) -> NDArray[np.float64]:
+        """Velocities of the centres of mass of subtrees, (nbody, 3), m/s, where a sensor or ``mj_subtreeVel`` computes them."""
+        return self._velocities_of_subtrees()[0]
+
+    @property
+    def subtree_angmom(self) -> NDArray[np.float64]:
+        """Angular momenta of subtrees about their centres of mass, (nbody, 3), kg m^2/s, as :attr:`subtree_linvel`."""
+        return self._velocities_of_subtrees()[1]
+
+    def _velocities_of_subtrees(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        kinds = (mjtSensor.mjSENS_SUBTREELINVEL, mjtSensor.mjSENS_SUBTREEANGMOM)
+        if np.isin(self.model.sensor_type, kinds).any():
+            for own, now in zip(self._subtrees, self._subtree_velocities()):
+                own[...] = now
+        subtrees: tuple[NDArray[np.float64], NDArray[np.float64]] = self._subtrees
+        return subtrees
+
+    def _subtree_velocities(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Returns velocities and angular momenta of subtrees by the current ``cvel``."""
+        m = self.model
+        masses, parents = np.asarray(m.body_mass)[:, None], np.asarray(m.body_parentid)
+        offsets = self.xipos - self.subtree_com[m.body_rootid]
+        velocity = self.cvel[:, 3:] + np.cross(self.cvel[:, :3], offsets)
+        axes = self.ximat.reshape(-1, 3, 3)
+        local = np.einsum("bji,bj->bi", axes, self.cvel[:, :3]) * m.body_inertia
+        momentum, spin = masses * velocity, np.einsum("bij,bj->bi", axes, local)
+        total = masses.copy()
+        for body in range(m.nbody - 1, 0, -1):
+            momentum[parents[body]] += momentum[body]
+            total[parents[body]] += total[body]
+        linear = momentum / np.maximum(1e-15, total)
+        for body in range(m.nbody - 1, -1, -1):
+            com = self.subtree_com[body]
+            # of the body itself about the centre of its subtree
+            spin[body] += np.cross(self.xipos[body] - com, m.body_mass[body] * (velocity[body] - linear[body]))
+            if body:
+                above = parents[body]
+                spin[above] += spin[body]
+                apart = com - self.subtree_com[above]
+                spin[above] += np.cross(apart, total[body, 0] * (linear[body] - linear[above]))
+        return linear, spin
+
     def __copy__(self) -> MjData:
         return MjData(self.model)._take(self)
 
     def _take(self, other: MjData) -> MjData:
         """Becomes a copy of another state of the model."""
         self._own.copy_from(other._own)
-        self.userdata[:] = other.userdata
+        for name in ("userdata", "energy", "qfrc_inverse", "solver_fwdinv"):
+            self._arrays[name][...] = other._arrays[name]
+        for own, its in zip(self._subtrees, other._subtrees):
+            own[...] = its
         self.__dict__["_start"] = other._start
         return self
 
     def __deepcopy__(self, memo: Any) -> MjData:
-        return self.__copy__()
+        return MjData(self.model.__copy__())._take(self)
 
-    def __reduce__(self) -> NoReturn:
-        raise TypeError("cannot pickle a state: pickle what mj_getState writes, and put it back with mj_setState")
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Pickles the model with the state; what a state computes is computed once more where it is unpickled."""
+        inputs = {name: np.array(self._arrays[name]) for name in (*_INPUTS, "userdata", "eq_active")}
+        others = {name: np.array(array) for name, array in self._arrays.items() if name not in inputs}
+        return _restored, (self.model, self.time, inputs, others)
 
     def __dir__(self) -> list[str]:
         names = [*self._arrays, *(f"efc_{name}" for name in (*_ROWS, "J")), *_COUNTED, *super().__dir__()]
-        return sorted({name for name in names if not name.startswith("_")})
+        more = [
+            name
+            for name in EMPTY
+            if name.startswith(("flexe", "flexv", "plugin_state", "plugin_data")) or name == "plugin"
+        ]
+        return sorted({name for name in [*names, *more, *NOT_OF_STATES] if not name.startswith("_")})
+
+    @staticmethod
+    def _of_instances() -> list[str]:
+        return dir(MjData(MjModel.from_xml_string(_SIMPLEST)))
 
     def _sparse(self) -> bool:
         jacobian = self.model.opt.jacobian
@@ -186,6 +261,21 @@ class MjData(Named):
 
     def _compute(self, *groups: str) -> None:
         self._own.forward(sum(_native.PhysicsData.GROUPS[group] for group in groups))
+
+
+def _restored(model: MjModel, time: float, inputs: dict[str, NDArray[Any]], others: dict[str, NDArray[Any]]) -> MjData:
+    """Makes a state again from what was pickled."""
+    data = MjData(model)
+    for name, values in inputs.items():
+        data._arrays[name][...] = values
+    data.time = time
+    if others["xquat"].any():
+        # contacts and rows of constraints are no arrays
+        data._compute("input", "constraints")
+    for name, values in {**others, **inputs}.items():
+        data._arrays[name][...] = values
+    data.time = time
+    return data
 
 
 for _name, _kind in {**KINDS, "ten": "tendon"}.items():

@@ -8,10 +8,11 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from .data import MjData
-from .enums import mjtIntegrator, mjtObj, mjtState
+from .derived import matrix_places
+from .enums import mjtDisableBit, mjtEnableBit, mjtIntegrator, mjtObj, mjtState
 from .jacobians import check
 from .maths import mju_normalize, mju_quatIntegrate, mju_subQuat, mju_transformSpatial
-from .model import MjModel, matrix_places
+from .model import MjModel
 
 __all__ = [
     "mj_camlight",
@@ -110,7 +111,12 @@ def mj_step(m: MjModel, d: MjData, nstep: int = 1) -> None:
     """
     check(m, d)
     _anew(d)
-    d._own.step(int(nstep))
+    if getattr(m.opt, "enableflags", 0) & mjtEnableBit.mjENBL_ENERGY:
+        from .inverse import step_with_energy
+
+        step_with_energy(m, d, int(nstep))
+    else:
+        d._own.step(int(nstep))
 
 
 def mj_forward(m: MjModel, d: MjData) -> None:
@@ -118,6 +124,7 @@ def mj_forward(m: MjModel, d: MjData) -> None:
     check(m, d)
     _anew(d)
     d._compute("input", *_Position, *_Velocity, "actuation", "acceleration", "sensors", "constraints")
+    d.__dict__["_start"] = _fixed_between(d)
 
 
 def mj_fwdPosition(m: MjModel, d: MjData) -> None:
@@ -173,31 +180,55 @@ def _fixed_between(d: MjData) -> list[_Floats]:
 
 
 def mj_step1(m: MjModel, d: MjData) -> None:
-    """Computes the first part of a step, which controls do not change; :func:`mj_step2` does the rest.
-
-    Raises:
-        NotImplementedError: The model is integrated by Runge and Kutta's method, which has no such halves.
-    """
+    """Computes the first part of a step, which controls do not change; :func:`mj_step2` does the rest."""
     check(m, d)
-    if m.opt.integrator != mjtIntegrator.mjINT_EULER:
-        raise NotImplementedError(
-            "mj_step1 and mj_step2 are there for the integrator Euler alone: MuJoCo's mj_step2 would use Euler instead of RK4. "
-            "Set model.opt.integrator to 0, or call mj_step"
-        )
     d._compute(*_Position, *_Velocity, "constraints")
     early = np.repeat(m.sensor_needstage < 3, m.sensor_dim)
     d.sensordata[early] = d._own.sensordata()[early]
     d.__dict__["_start"] = _fixed_between(d)
 
 
+def _moved(start: list[_Floats], d: MjData) -> bool:
+    """Returns whether a program has changed positions or velocities, and nothing else, since a step was begun."""
+    same = [np.array_equal(was, now) for was, now in zip(start, _fixed_between(d))]
+    return same[2:] == [True, True, True] and not all(same)
+
+
+def _advance_from(m: MjModel, d: MjData, start: list[_Floats]) -> None:
+    """Advances positions and velocities of now by the accelerations of those from which the step was begun, as MuJoCo does."""
+    at = d.qpos.copy(), d.qvel.copy()
+    d.qpos[:], d.qvel[:] = start[:2]
+    mj_forward(m, d)
+    _anew(d)
+    acceleration, damping = d.qacc.copy(), m.dof_damping * m.opt.timestep
+    if damping.any() and not m.opt.disableflags & mjtDisableBit.mjDSBL_EULERDAMP:
+        forces = d.qfrc_smooth + d.qfrc_constraint
+        acceleration = np.linalg.solve(d._own.inertia() + np.diag(damping), forces)
+    d.qacc_warmstart[:] = d.qacc
+    d.qpos[:], d.qvel[:] = at
+    d.qvel += m.opt.timestep * acceleration
+    mj_integratePos(m, d.qpos, d.qvel, m.opt.timestep)
+    d.time += m.opt.timestep
+
+
 def mj_step2(m: MjModel, d: MjData) -> None:
-    """Does the rest of a step that :func:`mj_step1` began: actuators, accelerations, integration.
+    """Does the rest of a step that :func:`mj_step1` or :func:`mj_forward` began: actuators, accelerations, integration.
 
     Raises:
-        RuntimeError: No step was begun, or positions or velocities have changed since.
+        NotImplementedError: The model is integrated by Runge and Kutta's method, which has no such halves.
+        RuntimeError: No step was begun; or positions or velocities have changed since, and the model has activations or an
+            implicit integrator.
     """
     check(m, d)
+    if m.opt.integrator == mjtIntegrator.mjINT_RK4:
+        raise NotImplementedError(
+            "mj_step2 is there for Euler's and the implicit integrators: MuJoCo's would use Euler instead of RK4. Set "
+            "model.opt.integrator to 0, or call mj_step"
+        )
     start = d._start
+    if start is not None and not m.na and m.opt.integrator == mjtIntegrator.mjINT_EULER and _moved(start, d):
+        _advance_from(m, d, start)
+        return
     if start is None:
         raise RuntimeError("mj_step2 goes on with what mj_step1 began: call mj_step1 before it, or mj_step alone")
     if not all(np.array_equal(was, now) for was, now in zip(start, _fixed_between(d))):

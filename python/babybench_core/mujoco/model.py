@@ -3,15 +3,18 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Mapping
+from abc import ABCMeta
+from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Any, NoReturn
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from .. import _native
 from ..named import KINDS, PREFIX, Named, accessor, numbers, span
+from .derived import DERIVED
+from .model_fields import EMPTY, NAME_ADDRESSES, NO_FLEXES, NO_PLUGINS, NOT_OF_MODELS, Absent, empty, name_block
 from .options import FIXED, MISSING, MjOption, Settings, visual, with_rows
 
 _SINGLES = frozenset(
@@ -19,6 +22,7 @@ _SINGLES = frozenset(
     for kind, names in {
         "geom": ("rgba",),
         "site": ("rgba",),
+        "cam": ("intrinsic", "sensorsize"),
         "light": ("ambient", "diffuse", "specular", "attenuation", "cutoff", "exponent"),
         "mat": ("rgba", "specular", "shininess", "reflectance", "emission", "texrepeat"),
     }.items()
@@ -48,7 +52,7 @@ _SIZES = (
         "nsensordata",
         "npair",
     ),
-    *("nkey", "nlight", "nexclude", "nmesh", "nhfield", "nskin"),
+    *("nkey", "nlight", "nexclude", "nmesh", "nhfield", "nskin", "nflex"),
 )
 
 
@@ -101,8 +105,16 @@ def views(memory: NDArray[np.float64], layout: list[tuple[str, list[int]]]) -> d
     return found
 
 
-def _contents(assets: Mapping[str, bytes]) -> dict[str, bytes]:
-    return {name: bytes(content) for name, content in assets.items()}
+def _contents(assets: Mapping[str, bytes | str]) -> dict[str, bytes]:
+    return {name: content.encode() if isinstance(content, str) else bytes(content) for name, content in assets.items()}
+
+
+class Fields(ABCMeta):
+    """The type of :class:`MjModel` and ``MjData``, whose ``dir`` lists the fields of MuJoCo's, as programs do that wrap them."""
+
+    def __dir__(cls) -> list[str]:
+        of_instances = cls.__dict__.get("_of_instances")
+        return sorted({*super().__dir__(), *(of_instances() if of_instances is not None else ())})
 
 
 @dataclass(frozen=True)
@@ -121,7 +133,7 @@ class Source:
         return _native.PhysicsModel.from_text(self.text, dict(self.files), self.folder)
 
 
-class MjModel(Named):
+class MjModel(Named, metaclass=Fields):
     """A compiled model, under the names and in the shapes of MuJoCo's ``MjModel``.
 
     Arrays that steps and pictures read can be written to, and the next step or picture takes what is written: masses, sizes,
@@ -138,7 +150,9 @@ class MjModel(Named):
         raise TypeError("make models with MjModel.from_xml_path(path) or MjModel.from_xml_string(text)")
 
     @classmethod
-    def from_xml_path(cls, filename: str | os.PathLike[str], assets: Mapping[str, bytes] | None = None) -> MjModel:
+    def from_xml_path(
+        cls, filename: str | os.PathLike[str], assets: Mapping[str, bytes | str] | None = None
+    ) -> MjModel:
         """Compiles an MJCF document. Files that it names are found as in MuJoCo: beside it, above it, or by absolute path.
 
         Args:
@@ -166,7 +180,7 @@ class MjModel(Named):
         return cls._made(native, Source(text, os.path.abspath(folder), files))
 
     @classmethod
-    def from_xml_string(cls, xml: str, assets: Mapping[str, bytes] | None = None) -> MjModel:
+    def from_xml_string(cls, xml: str | bytes, assets: Mapping[str, bytes | str] | None = None) -> MjModel:
         """Compiles the text of an MJCF document.
 
         Files that it names are found as in MuJoCo: from the working directory, or by absolute path.
@@ -179,6 +193,8 @@ class MjModel(Named):
             ValueError: As :meth:`from_xml_path`; or two assets of one name.
         """
         files = _contents(assets or {})
+        if isinstance(xml, bytes):
+            xml = xml.decode()
         return cls._made(_native.PhysicsModel.from_text(xml, files, ""), Source(xml, os.getcwd(), files))
 
     @classmethod
@@ -200,7 +216,10 @@ class MjModel(Named):
         arrays.update({name: array for name, array in columns.items() if not name.startswith("vis_")})
         own = self.__dict__
         own.update({name: int(settings[name]) for name in _SIZES})
-        own.update(_own=native, _source=source, _names=names, _numbers=numbers(names))
+        own.update(dict.fromkeys(NO_PLUGINS if settings["nflex"] else (*NO_PLUGINS, *NO_FLEXES), 0))
+        own.update(
+            _own=native, _source=source, _model_name=str(settings["name"]), _names=names, _numbers=numbers(names)
+        )
         own.update(_arrays=arrays, _extras=extras, _chains={})
         own.update(arrays)
         own["writable"] = tuple(arrays)
@@ -240,16 +259,46 @@ class MjModel(Named):
     def __deepcopy__(self, memo: Any) -> MjModel:
         return self.__copy__()
 
-    def __reduce__(self) -> NoReturn:
-        raise TypeError(
-            "cannot pickle a model: make it from its document where it is needed, with MjModel.from_xml_path"
-        )
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Pickles the document and what was written into the model.
+
+        Raises:
+            TypeError: The document is not known as text.
+        """
+        if self._source is None:
+            raise TypeError(
+                "cannot pickle this model, whose document is no UTF-8: make it with MjModel.from_xml_path where it is needed"
+            )
+        written = {name: np.array(array) for name, array in self._arrays.items()}
+        shown = {name: np.array(self.__dict__[name]) for name in _CONSTANTS if name in self.__dict__}
+        return _restored, (self._source, written, shown, self.opt._numbers(), self.vis._written())
 
     def __dir__(self) -> list[str]:
-        names = [*self.__dict__, *_DERIVED, *self._extras, *_native.PhysicsModel.ARRAYS, *super().__dir__()]
+        names = [*self.__dict__, *DERIVED, *self._extras, *_native.PhysicsModel.ARRAYS, *super().__dir__()]
+        names += ["names", *self._shapes, *NAME_ADDRESSES, *NOT_OF_MODELS]
+        names += [name for name in EMPTY if name.startswith(("flex_", "plugin", "name_")) or name in _OF_EDGES]
+        names = [name for name in names if name not in ("plugin_data", "plugin_state")]
         return sorted(
-            {name for name in names if not name.startswith("_") and name not in _OWN} | {"texture", "material"}
+            {name for name in names if not name.startswith("_") and (name not in _OWN or name in NOT_OF_MODELS)}
+            | {"texture", "material"}
         )
+
+    @staticmethod
+    def _of_instances() -> list[str]:
+        return dir(MjModel.from_xml_string("<mujoco/>"))
+
+    @property
+    def _shapes(self) -> dict[str, NDArray[Any]]:
+        """Arrays of meshes, height fields and skins, which are read once."""
+        if "_meshes" not in self.__dict__:
+            self.__dict__["_meshes"] = self._own.shapes()
+        found: dict[str, NDArray[Any]] = self.__dict__["_meshes"]
+        return found
+
+    def _named(self, name: str) -> Any:
+        """Returns the block of all names, or where in it those of a kind start."""
+        block, starts = name_block(self._model_name, self._names, {"pair": self.npair, "exclude": self.nexclude})
+        return block if name == "names" else starts[name]
 
     def _compiled(self, name: str) -> NDArray[Any]:
         array = np.asarray(self._own.array(name))
@@ -259,10 +308,18 @@ class MjModel(Named):
 
     def _derived(self, name: str) -> Any:
         """Returns what MuJoCo has and the engine keeps in another form, or nothing."""
-        if name in _DERIVED:
-            return _DERIVED[name](self)
+        if name in DERIVED:
+            return DERIVED[name](self)
+        if name in NOT_OF_MODELS:
+            return Absent(f"model.{name}")
         if name in _OWN:
             return None
+        if name in EMPTY:
+            return empty(name, self.nflex, "model")
+        if name == "names" or name in NAME_ADDRESSES:
+            return self._named(name)
+        if name in self._shapes:
+            return self._shapes[name]
         if name.endswith("_user") and name[:-5] in _USERS:
             count = len(self._names[_KIND_OF.get(name[:-5], name[:-5])])
             array = self._compiled(name)
@@ -304,6 +361,33 @@ class MjModel(Named):
         return array[number] if array.ndim > 1 else array[number : number + 1]
 
 
+_CONSTANTS = ("dof_M0", "body_subtreemass")
+"""Arrays that ``mj_setConst`` computes anew."""
+_OF_EDGES = ("flexedge_invweight0", "flexedge_length0", "flexedge_rigid")
+
+
+def _restored(
+    source: Source,
+    written: dict[str, NDArray[Any]],
+    shown: dict[str, NDArray[Any]],
+    options: dict[str, Any],
+    visual: dict[str, dict[str, Any]],
+) -> MjModel:
+    """Makes a model again from what was pickled."""
+    model = MjModel._made(source.compile(), source)
+    for name, values in written.items():
+        if values.size:
+            model._arrays[name][...] = values
+    for name, values in shown.items():
+        model.__dict__[name] = _fixed(values, name)
+    for name, value in options.items():
+        setattr(model.opt, name, value)
+    for part, settings in visual.items():
+        for name, value in settings.items():
+            setattr(getattr(model.vis, part), name, value)
+    return model
+
+
 def is_compiled(model: Any) -> bool:
     """Tells a model of this module from everything else, also from the model of an environment."""
     return isinstance(model, MjModel) and "_own" in model.__dict__
@@ -311,75 +395,6 @@ def is_compiled(model: Any) -> bool:
 
 _KIND_OF = {"jnt": "joint", "cam": "camera"}
 
-
-def _keys(name: str, size: str, each: int = 1) -> Callable[[MjModel], Any]:
-    return lambda m: np.asarray(m._extras[name]).reshape(m.nkey, each * getattr(m, size))
-
-
-def _starts(counts: NDArray[Any]) -> NDArray[np.int32]:
-    starts: NDArray[np.int32] = (np.cumsum(counts) - counts).astype(np.int32)
-    return starts
-
-
-def _trees(m: MjModel) -> NDArray[np.int32]:
-    """Returns the number of the tree of each body: -1 for those that cannot move."""
-    roots: dict[int, int] = {}
-    found = np.full(m.nbody, -1, np.int32)
-    parents, moves = m.body_parentid, m.body_dofnum
-    for body in range(1, m.nbody):
-        above = found[parents[body]]
-        if above < 0 and moves[body]:
-            above = roots.setdefault(body, len(roots))
-        found[body] = above
-    return found
-
-
-def _matrix_addresses(m: MjModel) -> NDArray[np.int32]:
-    """Returns where the row of each degree of freedom starts in ``qM``."""
-    depth = np.zeros(m.nv, np.int32)
-    for dof, parent in enumerate(m.dof_parentid):
-        depth[dof] = 1 + (depth[parent] if parent >= 0 else 0)
-    return _starts(depth)
-
-
-def matrix_places(m: MjModel) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
-    """Returns the row and the column in full of each number of ``qM``."""
-    found = m.__dict__.get("_places")
-    if found is None:
-        rows, columns = [], []
-        parents = m.dof_parentid
-        for dof in range(m.nv):
-            other = dof
-            while other >= 0:
-                rows.append(dof)
-                columns.append(other)
-                other = int(parents[other])
-        found = np.array(rows, np.intp), np.array(columns, np.intp)
-        m.__dict__["_places"] = found
-    places: tuple[NDArray[np.intp], NDArray[np.intp]] = found
-    return places
-
-
-_DERIVED: dict[str, Callable[[MjModel], Any]] = {
-    "cam_orthographic": lambda m: m._compiled("cam_orthographic").astype(np.int32),
-    "dof_M0": lambda m: m._compiled("dof_m0"),
-    "dof_Madr": _matrix_addresses,
-    "dof_treeid": lambda m: m.body_treeid[m.dof_bodyid],
-    "body_treeid": _trees,
-    "nM": lambda m: len(matrix_places(m)[0]),
-    "ntree": lambda m: int(m.body_treeid.max(initial=-1)) + 1,
-    "pair_geom1": lambda m: m._compiled("pair_geom").reshape(-1, 2)[:, 0],
-    "pair_geom2": lambda m: m._compiled("pair_geom").reshape(-1, 2)[:, 1],
-    "exclude_signature": lambda m: m._compiled("exclude").reshape(-1, 2) @ np.array([1 << 16, 1], np.int32),
-    "actuator_trnid": lambda m: np.stack([m._compiled("actuator_trnid"), m._compiled("actuator_refid")], axis=1),
-    "actuator_actnum": lambda m: (m._compiled("actuator_actadr") >= 0).astype(np.int32),
-    "tendon_adr": lambda m: _starts(m.tendon_num),
-    "numeric_size": lambda m: np.array([len(data) for data in m._extras["numeric_data"]], np.int32),
-    "numeric_adr": lambda m: _starts(m.numeric_size),
-    "numeric_data": lambda m: np.array([value for data in m._extras["numeric_data"] for value in data], np.float64),
-    "key_mpos": _keys("key_mpos", "nmocap", 3),
-    "key_mquat": _keys("key_mquat", "nmocap", 4),
-}
 
 for _name, _kind in {**KINDS, "light": "light", "key": "key", "keyframe": "key", "numeric": "numeric"}.items():
     setattr(MjModel, _name, accessor(_kind))

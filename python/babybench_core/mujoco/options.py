@@ -63,6 +63,15 @@ class MjOption:
     def __dir__(self) -> list[str]:
         return sorted([*self._floats, *self._wholes])
 
+    def _numbers(self) -> dict[str, Any]:
+        """Returns all options, to be pickled."""
+        return {**{name: np.array(array) for name, array in self._floats.items()}, **self._wholes}
+
+    def _differs(self, other: MjOption) -> bool:
+        """Returns whether an option has another value."""
+        mine, its = self._numbers(), other._numbers()
+        return any(not np.array_equal(mine[name], its[name]) for name in mine)
+
 
 class Settings:
     """Numbers of a model that do not change, or change nothing: ``model.stat``, ``model.vis`` and what is in it."""
@@ -79,6 +88,11 @@ class Settings:
 
     def __getattr__(self, name: str) -> Any:
         raise AttributeError(MISSING.format(name=f"{self.__dict__.get('_of', '')}.{name}"))
+
+    def _written(self) -> dict[str, dict[str, Any]]:
+        """Returns the values that can be set, of each part of the settings."""
+        parts = {name: part for name, part in self.__dict__.items() if isinstance(part, Settings)}
+        return {name: {free: part.__dict__[free] for free in part.__dict__["_free"]} for name, part in parts.items()}
 
 
 class Drawn(Settings):

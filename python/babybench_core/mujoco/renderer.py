@@ -12,6 +12,7 @@ from .data import MjData
 from .enums import mjtCamera, mjtObj
 from .jacobians import check
 from .model import MjModel, is_compiled
+from .scene import MjvScene, marker
 from .scene_option import MjvOption, shown
 
 __all__ = ["MjvCamera", "Renderer", "mjv_defaultCamera", "mjv_defaultFreeCamera"]
@@ -57,9 +58,17 @@ def mjv_defaultFreeCamera(m: MjModel, cam: MjvCamera) -> None:
 
 
 def draw(
-    native: _native.PhysicsRenderer, data: MjData, camera: MjvCamera, size: tuple[int, int], what: str
+    native: _native.PhysicsRenderer,
+    data: MjData,
+    camera: MjvCamera,
+    size: tuple[int, int],
+    what: str,
+    scene: MjvScene | None = None,
 ) -> NDArray[Any]:
-    """Draws what the arrays of a state show: ``rgb``, ``depth`` (m) or ``segmentation`` (ids of geoms); size is width, height."""
+    """Draws what the arrays of a state show: ``rgb``, ``depth`` (m) or ``segmentation`` (ids of geoms); size is width, height.
+
+    ``scene`` has geoms that are added.
+    """
     fixed: int | None = None
     lookat = camera.lookat
     if camera.type == mjtCamera.mjCAMERA_FIXED:
@@ -79,7 +88,8 @@ def draw(
     if not data.xquat[0].any():
         raise ValueError("nothing is computed of this state: call mj_forward before a picture")
     free = (tuple(map(float, lookat)), float(camera.distance), float(camera.azimuth), float(camera.elevation))
-    return native.draw(data._own, fixed, free, size, what)
+    markers = [] if scene is None else [marker(geom) for geom in scene.geoms[: scene.ngeom]]
+    return native.draw(data._own, (fixed, free), size, what, markers)
 
 
 class Renderer:
@@ -102,6 +112,12 @@ class Renderer:
         self._data: MjData | None = None
         self._camera = MjvCamera()
         self._what = "rgb"
+        self._scene = MjvScene(model, int(max_geom))
+
+    @property
+    def scene(self) -> MjvScene:
+        """Geoms that programs add to the next pictures, until the next :meth:`update_scene`."""
+        return self._scene
 
     @property
     def model(self) -> MjModel:
@@ -156,6 +172,7 @@ class Renderer:
             if number >= 0:
                 self._camera.type, self._camera.fixedcamid = int(mjtCamera.mjCAMERA_FIXED), number
         self._data = data
+        self._scene.ngeom = 0
 
     def enable_depth_rendering(self) -> None:
         """Draws distances from the camera's plane from now on."""
@@ -190,12 +207,15 @@ class Renderer:
             raise RuntimeError("render cannot be called after close.")
         if self._data is None:
             raise RuntimeError("call update_scene(data) before render()")
-        picture = draw(self._native, self._data, self._camera, (self._width, self._height), self._what)
+        picture = draw(self._native, self._data, self._camera, (self._width, self._height), self._what, self._scene)
         if self._what == "depth":
             far = self._model.vis.map.zfar * self._model.stat.extent
             picture = np.minimum(picture, np.float32(far))
         elif self._what == "segmentation":
+            # markers are elements of no kind
+            added = picture >= self._model.ngeom
             kinds = np.where(picture >= 0, np.int32(mjtObj.mjOBJ_GEOM), np.int32(-1))
+            picture, kinds = np.where(added, np.int32(0), picture), np.where(added, np.int32(0), kinds)
             picture = np.stack([picture, kinds], axis=2)
         if out is None:
             return picture
