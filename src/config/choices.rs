@@ -271,11 +271,19 @@ choices! {
 choices! {
     /// A reflex of infants (`reflexes`).
     Reflex {
-        /// A drop of the head spreads the arms, then closes them.
+        /// Pressure in the palm bends the fingers.
         #[default]
+        PalmarGrasp = "palmar_grasp",
+        /// Pressure behind the toes bends them.
+        PlantarGrasp = "plantar_grasp",
+        /// A touch beside the mouth turns the head to it.
+        Rooting = "rooting",
+        /// A drop of the head spreads the arms, then closes them.
         Moro = "moro",
         /// A turned head stretches arm and leg of the face's side and bends those of the other (the asymmetric tonic neck reflex).
         Atnr = "atnr",
+        /// Loaded soles of an upright infant step.
+        Stepping = "stepping",
         /// The eyes turn against the head (the vestibulo-ocular reflex).
         Vor = "vor",
         /// A muscle that is stretched pulls back.

@@ -262,14 +262,22 @@ config! {
             observed as reflex_observed: bool = false, Bool, "How strongly each reflex acts is observed.";
         }
         @group reflex_gains: ReflexGains, "Gains of single reflexes (`reflex_gain_vor` ...).", "Gains of single reflexes, in place of those of MIMo's age." {
+            palmar_grasp as reflex_gain_palmar_grasp: Option<f64> = None, OWN_FACTOR, "The gain of the palmar grasp, 1 is full; none for that of MIMo's age.";
+            plantar_grasp as reflex_gain_plantar_grasp: Option<f64> = None, OWN_FACTOR, "The gain of the plantar grasp, 1 is full; none for that of MIMo's age.";
+            rooting as reflex_gain_rooting: Option<f64> = None, OWN_FACTOR, "The gain of rooting, 1 is full; none for that of MIMo's age.";
             moro as reflex_gain_moro: Option<f64> = None, OWN_FACTOR, "The gain of the Moro reflex, 1 is full; none for that of MIMo's age.";
             atnr as reflex_gain_atnr: Option<f64> = None, OWN_FACTOR, "The gain of the asymmetric tonic neck reflex, 1 is full; none for that of MIMo's age.";
+            stepping as reflex_gain_stepping: Option<f64> = None, OWN_FACTOR, "The gain of stepping, 1 is full; none for that of MIMo's age.";
             vor as reflex_gain_vor: Option<f64> = None, OWN_FACTOR, "The gain of the vestibulo-ocular reflex, eyes over head; none for that of MIMo's age.";
             stretch as reflex_gain_stretch: Option<f64> = None, OWN_FACTOR, "The gain of the stretch reflex, 1 is full; none for that of MIMo's age.";
         }
         @group reflex_delays: ReflexDelays, "Delays of single reflexes (`reflex_delay_vor` ...).", "Delays of single reflexes, ms, in place of their own." {
+            palmar_grasp as reflex_delay_palmar_grasp: Option<f64> = None, REFLEX_DELAY, "The delay of the palmar grasp, ms; none for its own.";
+            plantar_grasp as reflex_delay_plantar_grasp: Option<f64> = None, REFLEX_DELAY, "The delay of the plantar grasp, ms; none for its own.";
+            rooting as reflex_delay_rooting: Option<f64> = None, REFLEX_DELAY, "The delay of rooting, ms; none for its own.";
             moro as reflex_delay_moro: Option<f64> = None, REFLEX_DELAY, "The delay of the Moro reflex, ms; none for its own.";
             atnr as reflex_delay_atnr: Option<f64> = None, REFLEX_DELAY, "The delay of the asymmetric tonic neck reflex, ms; none for its own.";
+            stepping as reflex_delay_stepping: Option<f64> = None, REFLEX_DELAY, "The delay of stepping, ms; none for its own.";
             vor as reflex_delay_vor: Option<f64> = None, REFLEX_DELAY, "The delay of the vestibulo-ocular reflex, ms; none for its own.";
             stretch as reflex_delay_stretch: Option<f64> = None, REFLEX_DELAY, "The delay of the stretch reflex, ms; none for its own.";
         }

@@ -73,9 +73,9 @@ fn defaults_are_those_of_the_api_page() {
                 vision_foveation_left=none vision_foveation_right=none";
     let pain = "touch_pooled=false pain_active=false pain_threshold=20.0 pain_slope=0.1 pain_limit=none \
                 pain_decay_old=0.0 pain_decay_new=1.0";
-    let reflexes = "reflexes=none reflex_gain=1.0 reflex_vor=replace reflex_observed=false reflex_gain_moro=none reflex_gain_atnr=none \
-                    reflex_gain_vor=none reflex_gain_stretch=none reflex_delay_moro=none reflex_delay_atnr=none \
-                    reflex_delay_vor=none reflex_delay_stretch=none";
+    let reflexes = "reflexes=none reflex_gain=1.0 reflex_vor=replace reflex_observed=false reflex_gain_palmar_grasp=none reflex_gain_plantar_grasp=none reflex_gain_rooting=none reflex_gain_moro=none reflex_gain_atnr=none \
+                    reflex_gain_stepping=none reflex_gain_vor=none reflex_gain_stretch=none reflex_delay_palmar_grasp=none reflex_delay_plantar_grasp=none reflex_delay_rooting=none reflex_delay_moro=none reflex_delay_atnr=none \
+                    reflex_delay_stepping=none reflex_delay_vor=none reflex_delay_stretch=none";
     let ours: Vec<String> = Config::keys()
         .iter()
         .map(|key| format!("{}={}", key.name, key.default_value().to_yaml()))

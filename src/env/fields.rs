@@ -15,7 +15,16 @@ pub(crate) const PARTS: [&str; 2] = ["right_hand_parts", "left_hand_parts"];
 /// Keys of the report of a task with a goal.
 const TASK: [&str; 4] = ["task", "is_success", "is_failure", "return"];
 /// Keys of the shares of steps in which reflexes acted, in the order of [`Reflex::ALL`].
-const REFLEXES: [&str; Reflex::ALL.len()] = ["reflex_moro", "reflex_atnr", "reflex_vor", "reflex_stretch"];
+const REFLEXES: [&str; Reflex::ALL.len()] = [
+    "reflex_palmar_grasp",
+    "reflex_plantar_grasp",
+    "reflex_rooting",
+    "reflex_moro",
+    "reflex_atnr",
+    "reflex_stepping",
+    "reflex_vor",
+    "reflex_stretch",
+];
 /// The key of the number of steps.
 pub(crate) const STEPS: &str = "steps";
 

@@ -24,6 +24,27 @@ const OURS: &str = "ours";
 /// Every reflex, in the order of [`Reflex::ALL`].
 const ROWS: [ReflexRow; Reflex::ALL.len()] = [
     row(
+        Reflex::PalmarGrasp,
+        100.0,
+        (Mark::Unsourced, OURS),
+        Some([2.0, 5.0]),
+        "to 4 to 6 months (Futagi 2012, doi:10.1155/2012/191562)",
+    ),
+    row(
+        Reflex::PlantarGrasp,
+        100.0,
+        (Mark::Unsourced, OURS),
+        Some([6.0, 10.0]),
+        TABLES,
+    ),
+    row(
+        Reflex::Rooting,
+        300.0,
+        (Mark::Unsourced, OURS),
+        Some([2.0, 4.0]),
+        TABLES,
+    ),
+    row(
         Reflex::Moro,
         120.0,
         (
@@ -39,6 +60,13 @@ const ROWS: [ReflexRow; Reflex::ALL.len()] = [
         (Mark::Unsourced, OURS),
         Some([2.0, 5.0]),
         "12 infants (Coryell 1979, doi:10.1093/ptj/59.6.747), to 4 to 7 months",
+    ),
+    row(
+        Reflex::Stepping,
+        100.0,
+        (Mark::Unsourced, OURS),
+        Some([1.5, 2.5]),
+        TABLES,
     ),
     row(Reflex::Vor, 10.0, (Mark::Unsourced, OURS), None, OURS),
     row(
@@ -111,6 +139,41 @@ pub(crate) const ATNR_ARM_GAINS: [f64; 2] = [0.7, 1.0];
 pub(crate) const ATNR_EFFORT: f64 = 0.2;
 /// Its time constants, rising and falling, s.
 pub(crate) const ATNR_TIMES: [f64; 2] = [0.3, 0.3];
+
+/// Pressure in the palm at which the grasp begins, and that by which it is full, N.
+pub(crate) const PALMAR: [f64; 2] = [0.05, 0.5];
+/// Pressure behind the toes at which their grasp begins, and that by which it is full, N.
+pub(crate) const PLANTAR: [f64; 2] = [0.1, 1.0];
+/// Place from which on the sole elicits it, over the distance of the toes from the ankle.
+pub(crate) const BALL: f64 = 0.5;
+/// Share of the range of fingers and toes to which they bend.
+pub(crate) const BEND: f64 = 0.8;
+/// Time constants of the grasps, rising and falling, s.
+pub(crate) const GRASP_TIMES: [f64; 2] = [0.1, 0.5];
+
+/// Force beside the mouth at which rooting begins, and that by which it is full, N.
+pub(crate) const ROOTING: [f64; 2] = [0.02, 0.2];
+/// Distance from the mouth of touches that elicit it, over the radius of the head.
+pub(crate) const BESIDE_MOUTH: f64 = 0.6;
+/// Share of the force of MIMo's own hands.
+pub(crate) const OWN_TOUCH: f64 = 0.33;
+/// Angle to which the head turns, rad: 30 degrees.
+pub(crate) const ROOTING_TURN: f64 = 0.523_598_775_598_298_8;
+/// Share of the neck's strength.
+pub(crate) const ROOTING_EFFORT: f64 = 0.5;
+/// Time constants of rooting, rising and falling, s.
+pub(crate) const ROOTING_TIMES: [f64; 2] = [0.2, 0.6];
+
+/// Share of the weight on the soles at which stepping begins, and that by which it is full.
+pub(crate) const STEPPING: [f64; 2] = [0.05, 0.05];
+/// Cosine of the greatest tilt of the trunk: 30 degrees.
+pub(crate) const UPRIGHT: f64 = 0.866_025_403_784_438_6;
+/// Duration of a step of each leg, s.
+pub(crate) const STEP_CYCLE: f64 = 1.5;
+/// Share of the strength of hips and knees.
+pub(crate) const STEPPING_EFFORT: f64 = 0.4;
+/// Time constants of stepping, rising and falling, s.
+pub(crate) const STEPPING_TIMES: [f64; 2] = [0.2, 1.0];
 
 /// Weight of the head, over that at rest, below which it drops.
 pub(crate) const MORO_WEIGHT: f64 = 0.5;
@@ -191,6 +254,66 @@ pub(super) fn constants() -> Vec<SourcedConstant> {
         named("moro, pause", &[MORO_PAUSE], "s", OURS, unsourced),
         named("moro, share of the strength", &[MORO_EFFORT], "1", OURS, unsourced),
         named("moro, the right arm first: share of drops, lead in s", &MORO_LATE, "1, s", "Ronnqvist 1995", seen),
+    ]);
+    all.extend([
+        named("palmar_grasp, begins at, full after", &PALMAR, "N", OURS, unsourced),
+        named("plantar_grasp, begins at, full after", &PLANTAR, "N", OURS, unsourced),
+        named(
+            "plantar_grasp, ball of the foot over its length",
+            &[BALL],
+            "1",
+            OURS,
+            unsourced,
+        ),
+        named("grasps, share of the range", &[BEND], "1", OURS, unsourced),
+        named("grasps, time constants", &GRASP_TIMES, "s", OURS, unsourced),
+        named("rooting, begins at, full after", &ROOTING, "N", OURS, unsourced),
+        named(
+            "rooting, distance from the mouth over the head's radius",
+            &[BESIDE_MOUTH],
+            "1",
+            OURS,
+            unsourced,
+        ),
+        named(
+            "rooting, share of the force of own hands",
+            &[OWN_TOUCH],
+            "1",
+            "self-touch elicits it less (Rochat and Hespos 1997); the share is ours",
+            seen,
+        ),
+        named("rooting, turn of the head", &[ROOTING_TURN], "rad", OURS, unsourced),
+        named(
+            "rooting, share of the strength",
+            &[ROOTING_EFFORT],
+            "1",
+            OURS,
+            unsourced,
+        ),
+        named("rooting, time constants", &ROOTING_TIMES, "s", OURS, unsourced),
+        named(
+            "stepping, begins at, full after",
+            &STEPPING,
+            "of the weight",
+            OURS,
+            unsourced,
+        ),
+        named(
+            "stepping, cosine of the greatest tilt",
+            &[UPRIGHT],
+            "1",
+            OURS,
+            unsourced,
+        ),
+        named("stepping, cycle", &[STEP_CYCLE], "s", OURS, unsourced),
+        named(
+            "stepping, share of the strength",
+            &[STEPPING_EFFORT],
+            "1",
+            OURS,
+            unsourced,
+        ),
+        named("stepping, time constants", &STEPPING_TIMES, "s", OURS, unsourced),
     ]);
     all
 }

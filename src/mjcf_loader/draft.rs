@@ -68,6 +68,8 @@ pub struct DraftActuator<'a> {
     pub forcerange: &'a mut [f64; 2],
     forcelimited: &'a mut AutoBool,
     servo: bool,
+    gainprm: &'a mut [f64],
+    biasprm: &'a mut [f64],
     /// Numbers for programs.
     pub user: &'a mut [f64],
 }
@@ -76,6 +78,18 @@ impl DraftActuator<'_> {
     /// Returns whether the actuator's force follows the position or velocity of its joint, as that of a servo does.
     pub fn is_servo(&self) -> bool {
         self.servo
+    }
+
+    /// Multiplies the actuator's force: the gear of a motor, gain and bias of a servo, whose gear would change its angles, too.
+    pub fn strengthen(&mut self, factor: f64) {
+        if self.servo {
+            self.gainprm
+                .iter_mut()
+                .chain(&mut *self.biasprm)
+                .for_each(|v| *v *= factor);
+        } else {
+            *self.gear *= factor;
+        }
     }
 
     /// Sets the range of the actuator's force, and enforces it.
@@ -244,6 +258,8 @@ impl Draft {
                 forcerange: &mut actuator.forcerange,
                 forcelimited: &mut actuator.forcelimited,
                 servo: actuator.law.biastype == BiasType::Affine,
+                gainprm: &mut actuator.law.gainprm,
+                biasprm: &mut actuator.law.biasprm,
                 user: &mut actuator.user,
             })
         })

@@ -450,3 +450,22 @@ fn states_and_activities_are_set_and_checked() {
     assert!(motors.by_hand().set_activity(&[]).is_ok() && motors.by_hand().set_activity(&[0.0]).is_err());
     assert!(motors.state().act.is_empty());
 }
+
+#[test]
+fn servos_of_every_age_pull_to_the_angle_of_the_action() {
+    // without gravity, springs alone keep a joint from it, which weaken less than a servo while he is small
+    for age in [Some(0.0), Some(6.0), None] {
+        let config = Config {
+            age,
+            actuation_model: ActuationModel::Positional,
+            ..free(Behavior::None, Scene::Base)
+        };
+        let model = blueprint(config).model().clone();
+        for name in ["act:left_eye_horizontal", "act:left_elbow"] {
+            let servo = model.actuator(name).expect("a servo");
+            assert_eq!(model.actuator_gear[servo], 1.0, "{name} at {age:?} months");
+            let [gain, bias] = [model.actuator_gainprm[servo][0], model.actuator_biasprm[servo][1]];
+            assert!(gain > 0.0 && gain == -bias, "{name} at {age:?} months");
+        }
+    }
+}

@@ -41,7 +41,7 @@ fn values(key: &Key) -> String {
             format!("{}, or a path that ends in `{ending}`", names(known))
         }
         KeyKind::List(choices) => format!("list of {}", names(choices)),
-        KeyKind::NoneOrList(choices) => format!("none, or a list of {}", names(choices)),
+        KeyKind::NoneOrList(choices) => format!("some of {}", names(choices)),
         KeyKind::Text => "text".to_string(),
         _ => key.kind.expected(),
     }

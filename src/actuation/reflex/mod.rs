@@ -7,8 +7,12 @@
 //! The table of reflexes, with ages and sources, is `mimo::reflexes`; what each one does in the file of its name.
 
 mod atnr;
+mod contacts;
+mod grasp;
 mod moro;
 mod motors;
+mod rooting;
+mod stepping;
 mod stretch;
 mod tables;
 mod vor;

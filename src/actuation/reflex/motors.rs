@@ -24,6 +24,8 @@ pub(super) struct Motor {
     strength: [f64; 2],
     /// Torque over the distance from a target, N m/rad.
     stiffness: f64,
+    /// Angles of its joint, rad.
+    pub range: [f64; 2],
 }
 
 impl Motor {
@@ -85,20 +87,14 @@ impl<'m> Motors<'m> {
         let index = self.actuation.actuators().iter().position(|&i| i == actuator)?;
         let joint = self.model.actuator_joint(actuator)?;
         let strength = self.strength[index];
-        // a servo has a stiffness of its own, so that its target moves by what the reflex asks for
-        let servo = self.model.actuator_gainprm[actuator][0] * self.model.actuator_gear[actuator];
-        let stiffness = if self.model.actuator_biasprm[actuator][1] == 0.0 {
-            strength[0].max(strength[1]) / REACH
-        } else {
-            servo * self.model.actuator_gear[actuator]
-        };
         Some(Motor {
             index,
             joint,
             qpos: self.model.jnt_qposadr[joint],
             dof: self.model.jnt_dofadr[joint],
             strength,
-            stiffness,
+            stiffness: strength[0].max(strength[1]) / REACH,
+            range: self.model.jnt_range[joint],
         })
     }
 

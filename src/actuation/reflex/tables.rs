@@ -1,7 +1,7 @@
 //! What the reflexes of all environments of a configuration share.
 
 use super::motors::Motors;
-use super::{ReflexLoop, atnr, moro, stretch, vor};
+use super::{ReflexLoop, atnr, grasp, moro, rooting, stepping, stretch, vor};
 use crate::actuation::{Actuation, ActuationError};
 use crate::config::{Config, Reflex};
 use crate::mimo::reflexes;
@@ -120,18 +120,40 @@ fn place(reflex: Reflex, built: Built, config: &Config, model: &Model) -> Placed
 /// Returns the gains that a configuration has in place of those of the age, in the order of [`Reflex::ALL`].
 fn own_gains(config: &Config) -> [Option<f64>; Reflex::ALL.len()] {
     let g = &config.reflex_gains;
-    [g.moro, g.atnr, g.vor, g.stretch]
+    [
+        g.palmar_grasp,
+        g.plantar_grasp,
+        g.rooting,
+        g.moro,
+        g.atnr,
+        g.stepping,
+        g.vor,
+        g.stretch,
+    ]
 }
 
 /// Returns the delays that a configuration has in place of the reflexes' own, ms, in the order of [`Reflex::ALL`].
 fn own_delays(config: &Config) -> [Option<f64>; Reflex::ALL.len()] {
     let d = &config.reflex_delays;
-    [d.moro, d.atnr, d.vor, d.stretch]
+    [
+        d.palmar_grasp,
+        d.plantar_grasp,
+        d.rooting,
+        d.moro,
+        d.atnr,
+        d.stepping,
+        d.vor,
+        d.stretch,
+    ]
 }
 
 /// Builds the loop of a reflex.
 fn build(reflex: Reflex, config: &Config, motors: &Motors<'_>) -> Result<Built, ActuationError> {
     match reflex {
+        Reflex::PalmarGrasp => grasp::palmar(motors),
+        Reflex::PlantarGrasp => grasp::plantar(motors),
+        Reflex::Rooting => rooting::build(motors),
+        Reflex::Stepping => stepping::build(motors),
         Reflex::Moro => moro::build(config, motors),
         Reflex::Atnr => atnr::build(config, motors),
         Reflex::Vor => vor::build(config, motors),

@@ -51,6 +51,8 @@ pub struct Growth {
     sizes: Sizes,
     /// Whether it is MIMo 3.
     has_chest: bool,
+    /// Whether servos get their strength by their gears, which scales their angles, too, as in the authors' code.
+    gears_of_servos: bool,
     /// Whether muscles keep their strength.
     same_muscles: bool,
     strength_age: f64,
@@ -97,6 +99,7 @@ impl Growth {
                 camera,
             },
             has_chest,
+            gears_of_servos: config.compat == Compat::Reference,
             same_muscles: has_chest && config.compat == Compat::Reference,
             strength_age,
             maturity: None,
@@ -150,7 +153,7 @@ impl Growth {
         }
         let ratios = self.sizes.volume_ratios(draft)?;
         let infant = self.maturity.as_ref().is_some_and(Maturity::has_strength);
-        for actuator in draft
+        for mut actuator in draft
             .actuators()
             .filter(|actuator| own.iter().any(|joint| joint == actuator.joint))
         {
@@ -161,9 +164,17 @@ impl Growth {
             let Some(ratio) = self.sizes.volume_ratio(&ratios, actuator.name) else {
                 continue;
             };
-            *actuator.gear *= ratio;
-            if !self.has_chest {
-                *actuator.gear *= strength::share(actuator.name, self.sizes.version);
+            let share = if self.has_chest {
+                1.0
+            } else {
+                strength::share(actuator.name, self.sizes.version)
+            };
+            if self.gears_of_servos {
+                *actuator.gear *= ratio;
+                *actuator.gear *= share;
+            } else {
+                actuator.strengthen(ratio);
+                actuator.strengthen(share);
             }
             if self.same_muscles {
                 continue;

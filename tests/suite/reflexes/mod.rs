@@ -3,6 +3,7 @@
 mod eyes;
 mod limbs;
 mod machinery;
+mod touched;
 
 use babybench::config::{ActuationModel, Reflex, ReflexGains, ReflexSet};
 use babybench::{Config, Env};

@@ -1,0 +1,71 @@
+//! Forces of contacts on parts of MIMo, for reflexes that are elicited by touch.
+
+use crate::math::{Vec3, mat_t_vec, sub};
+use crate::mimo::MimoBodies;
+use crate::model::Model;
+use crate::physics::State;
+
+/// Which of MIMo's bodies a reflex watches: for each geom of the scene the number of its group.
+pub(super) struct Watched {
+    groups: Vec<Option<u8>>,
+    /// Whether a geom is MIMo's.
+    own: Vec<bool>,
+}
+
+/// A contact of a watched geom with anything outside its group.
+pub(super) struct Pressed {
+    /// The group of the geom.
+    pub group: usize,
+    /// Force on it, N, in the frame of its body.
+    pub force: Vec3,
+    /// Force on it, N, in the world frame.
+    pub world: Vec3,
+    /// Point of contact, m, in the frame of its body.
+    pub point: Vec3,
+    /// Whether MIMo touches himself.
+    pub by_himself: bool,
+}
+
+impl Watched {
+    /// Watches the bodies for which `group` returns a number.
+    pub fn new(model: &Model, group: impl Fn(&str) -> Option<u8>) -> Self {
+        let bodies = MimoBodies::of(model);
+        let body = |geom: usize| model.geom_bodyid[geom];
+        let own: Vec<bool> = (0..model.ngeom()).map(|geom| bodies.contains(body(geom))).collect();
+        let groups = (0..model.ngeom()).map(|geom| group(&model.body_name[body(geom)]).filter(|_| own[geom]));
+        Self {
+            groups: groups.collect(),
+            own,
+        }
+    }
+
+    /// Calls `found` for each contact of the last physics step.
+    pub fn each(&self, model: &Model, state: &State, mut found: impl FnMut(&Pressed)) {
+        for contact in &state.contact {
+            let groups = contact.geom.map(|geom| self.groups[geom]);
+            if groups[0] == groups[1] {
+                continue; // neither is watched, or a part touches itself
+            }
+            let force = contact.world_force();
+            for side in 0..2 {
+                let Some(group) = groups[side] else { continue };
+                let world = if side == 0 { force.map(|v| -v) } else { force };
+                let body = model.geom_bodyid[contact.geom[side]];
+                let frame = &state.xmat[body];
+                found(&Pressed {
+                    group: usize::from(group),
+                    force: mat_t_vec(frame, world),
+                    world,
+                    point: mat_t_vec(frame, sub(contact.pos, state.xpos[body])),
+                    by_himself: self.own[contact.geom[1 - side]],
+                });
+            }
+        }
+    }
+}
+
+/// Returns the side of a body by its name, 0 for left and 1 for right.
+pub(super) fn side(body: &str) -> Option<(u8, &str)> {
+    let left = body.strip_prefix("left_").map(|name| (0, name));
+    left.or_else(|| body.strip_prefix("right_").map(|name| (1, name)))
+}
