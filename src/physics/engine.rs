@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use crate::MAXVAL;
 use crate::error::EngineError;
+use crate::flex_contact::ContactSide;
 use crate::model::Model;
 use crate::state::{Contact, State};
 use crate::table::length;
@@ -245,13 +246,22 @@ pub fn check_contacts(model: &Model, s: &State) -> Result<(), EngineError> {
         // an overflow of the sum is a divergence, too
         (numbers.fold(c.dist, |sum, v| sum + v.abs())).is_finite()
     };
-    let Some(bad) = s.contact.iter().find(|c| !finite(c)) else {
-        return Ok(());
-    };
-    let geoms = bad.geom.map(|geom| match model.geom_name.get(geom) {
+    let named = |names: &[String], id: usize| match names.get(id) {
         Some(name) if !name.is_empty() => format!("{name:?}"),
-        _ => geom.to_string(),
-    });
+        _ => id.to_string(),
+    };
+    let geoms = match s.contact.iter().find(|c| !finite(c)) {
+        Some(bad) => bad.geom.map(|geom| named(&model.geom_name, geom)),
+        None => match s.flex_contact.iter().find(|c| !finite(&c.contact)) {
+            Some(bad) => bad.sides.map(|side| match side {
+                ContactSide::Geom(geom) => named(&model.geom_name, geom),
+                ContactSide::Vertex { flex, .. } | ContactSide::Element { flex, .. } => {
+                    format!("flex {:?}", model.flexes[flex].name)
+                }
+            }),
+            None => return Ok(()),
+        },
+    };
     Err(EngineError::DivergedContact { step: s.step, geoms })
 }
 

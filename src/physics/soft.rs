@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use crate::collision::{PairTable, Sweep, contact_options};
+use crate::collision::{FlexSweep, PairTable, Sweep, contact_options};
 use crate::constraint::{DualSolver, NewtonSolver, RowBuilder, contact_forces};
 use crate::contact::Quirks;
 use crate::dynamics::*;
@@ -41,6 +41,7 @@ pub struct SoftEngine {
     topology: Arc<Topology>,
     pairs: Arc<PairTable>,
     sweep: Sweep,
+    flex_sweep: FlexSweep,
     rows: RowBuilder,
     newton: NewtonSolver,
     dual: DualSolver,
@@ -90,6 +91,7 @@ impl SoftModel {
         SoftEngine {
             options: self.options,
             sweep: Sweep::new(model, pairs, contact),
+            flex_sweep: FlexSweep::default(),
             rows: RowBuilder::new(model, topology),
             newton: NewtonSolver::with_capacity(topology, model.nv, RESERVED_CONTACTS),
             dual: DualSolver::default(),
@@ -141,8 +143,13 @@ impl SoftEngine {
         let flags = &self.model.opt.flags;
         if self.options.disable_contacts || !flags.contact || !flags.constraint {
             s.contact.clear();
+            s.flex_contact.clear();
         } else {
             vectorized!(self.sweep.contacts(&self.model, &self.pairs, s))?;
+            if !self.model.flexes.is_empty() {
+                let (options, scratch) = self.sweep.tools();
+                self.flex_sweep.contacts(&self.model, options, scratch, s)?;
+            }
         }
         self.mark(Some(Stage::Constraints));
         vectorized!(self.rows.build(&self.model, &self.topology, &self.composite, s));

@@ -2,6 +2,7 @@
 
 use crate::constraint::{Efc, EfcRow};
 use crate::error::EngineError;
+use crate::flex_contact::FlexContact;
 use crate::math::{MAT3_ID, Mat3, QUAT_ID, Quat, Vec3, add, cross, mat_t_vec, sub};
 use crate::model::Arrays;
 use crate::params::Params;
@@ -183,6 +184,8 @@ table! {
         pub qm: [Tile; topology.tiles.tiles()] => topology.new_tiles();
         /// Contacts (ncon) in MuJoCo's order; [`Contact`] tells units and frames.
         pub contact: (Vec<Contact>) = Vec::with_capacity(RESERVED_CONTACTS);
+        /// Contacts of flexes, in MuJoCo's order; [`FlexContact`] tells how they are mixed with those of geoms there.
+        pub flex_contact: (Vec<FlexContact>) = Vec::new();
         /// Constraint rows.
         pub efc: (Efc) = Efc::with_capacity(model.nv, RESERVED_CONTACTS);
 

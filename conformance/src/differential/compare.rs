@@ -357,6 +357,7 @@ pub fn describe_state(model: &Arc<Model>, recipe: &Recipe) -> String {
 /// Returns whether a contact moved.
 fn differ(a: &Contact, b: &Contact) -> bool {
     a.geom != b.geom
+        || a.flex != b.flex
         || (a.dist - b.dist).abs() > 1e-9
         || max_abs(&a.pos, &b.pos) > 1e-9
         || max_abs(&a.frame, &b.frame) > 1e-9

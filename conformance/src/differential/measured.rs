@@ -4,9 +4,10 @@ use babybench::Model;
 use babybench::model::SolverType;
 use babybench::physics::State;
 
+use super::contacts::contacts;
 use super::slack::Slack;
 use crate::measure::{max_abs, relative};
-use crate::mujoco::{Contact, Simulation};
+use crate::mujoco::Simulation;
 
 /// Accelerations, measured relative to the largest.
 pub(super) const QACC: &str = "qacc";
@@ -170,63 +171,6 @@ fn sensors(state: &State, theirs: &Simulation, limit: f64) -> Measured {
     sensors
 }
 
-fn contacts(state: &State, theirs: &[Contact]) -> Vec<Measured> {
-    let geoms: [Vec<[usize; 2]>; 2] = [
-        state.contact.iter().map(|c| c.geom).collect(),
-        theirs.iter().map(|c| c.geom).collect(),
-    ];
-    let place = format!("{:?}, MuJoCo {:?}", geoms[0], geoms[1]);
-    let other = f64::from(u8::from(geoms[0].len() != geoms[1].len()));
-    let mut all = vec![Measured::new("contacts: number", other, 0.0, place.clone())];
-    if other > 0.0 {
-        return all;
-    }
-    let other = f64::from(u8::from(geoms[0] != geoms[1]));
-    all.push(Measured::new("contacts: geoms in order", other, 0.0, place));
-    if other > 0.0 || theirs.is_empty() {
-        return all;
-    }
-    let mut worst = [
-        ("dist", 0.0, String::new()),
-        ("pos", 0.0, String::new()),
-        ("frame", 0.0, String::new()),
-    ];
-    let mut rest = (0.0_f64, String::new());
-    for (a, b) in state.contact.iter().zip(theirs) {
-        let errors = [
-            (a.dist - b.dist).abs(),
-            max_abs(&a.pos, &b.pos),
-            max_abs(&a.frame, &b.frame),
-        ];
-        for (worst, error) in worst.iter_mut().zip(errors) {
-            if error.is_nan() || error > worst.1 {
-                *worst = (worst.0, error, format!("of geoms {:?}: {a:?}, MuJoCo {b:?}", b.geom));
-            }
-        }
-        let alike = a.dim == b.dim
-            && relative(&a.friction, &b.friction) <= 1e-12
-            && (a.includemargin - b.includemargin).abs() <= 1e-12
-            && a.efc_address == b.efc_address;
-        if !alike {
-            rest = (1.0, format!("of geoms {:?}: {a:?}, MuJoCo {b:?}", b.geom));
-        }
-    }
-    let names = ["contacts: dist", "contacts: pos", "contacts: frame"];
-    all.extend(
-        names
-            .into_iter()
-            .zip(worst)
-            .map(|(name, worst)| Measured::new(name, worst.1, 1e-9, worst.2)),
-    );
-    all.push(Measured::new(
-        "contacts: dim, friction, margin, row",
-        rest.0,
-        0.0,
-        rest.1,
-    ));
-    all
-}
-
 fn rows(state: &State, theirs: &Simulation) -> Vec<Measured> {
     let ours: Vec<_> = state.efc_rows().collect();
     let place = format!("{}, MuJoCo {}", ours.len(), theirs.nefc());
@@ -240,10 +184,17 @@ fn rows(state: &State, theirs: &Simulation) -> Vec<Measured> {
             .map_or(String::new(), |row| format!(" {:?} {}", row.kind, row.id))
     };
     let mut compare = |quantity, of: fn(&babybench::physics::EfcRow) -> f64, theirs: &[f64], limit, each: bool| {
-        let values: Vec<f64> = ours.iter().map(of).collect();
-        let mut measured = Measured::relative(quantity, &values, theirs, limit);
+        let mut values: Vec<f64> = ours.iter().map(of).collect();
+        let mut theirs = theirs.to_vec();
+        if !state.flex_contact.is_empty() {
+            // contacts of flexes come in another order
+            for values in [&mut values, &mut theirs] {
+                values.sort_by(f64::total_cmp);
+            }
+        }
+        let mut measured = Measured::relative(quantity, &values, &theirs, limit);
         if each {
-            let errors = values.iter().zip(theirs).map(|(a, b)| relative(&[*a], &[*b]));
+            let errors = values.iter().zip(&theirs).map(|(a, b)| relative(&[*a], &[*b]));
             let worst = errors.enumerate().fold((0, 0.0), |w, e| if e.1 > w.1 { e } else { w });
             measured.error = worst.1;
             measured.place = format!(

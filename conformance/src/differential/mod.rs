@@ -6,6 +6,7 @@
 //! document for each attribute and value.
 
 pub mod compare;
+mod contacts;
 pub mod dice;
 mod document;
 pub mod language;

@@ -173,7 +173,7 @@ fn step(sides: &mut Sides, start: &State, out: &mut Figures, errors: &mut Vec<f6
     }
     let error = relative(&state.qacc, &qacc);
     errors.push(error);
-    let same = state.contact.len() == contacts;
+    let same = state.contact.len() + state.flex_contact.len() == contacts;
     if same && error <= LARGE {
         return;
     }

@@ -6,7 +6,9 @@ use testkit::harness::Trial;
 use testkit::{Rng, trials};
 
 pub fn trials() -> Vec<Trial> {
-    trials![needs MUJOCO: shapes_of_flexcomps_agree, flexes_of_bodies_agree, faults_of_flexes_are_refused_alike]
+    trials![needs MUJOCO: shapes_of_flexcomps_agree, flexes_of_bodies_agree, faults_of_flexes_are_refused_alike,
+        flexes_touch_geoms_alike, parameters_of_contacts_agree, flexes_touch_each_other_alike,
+        flexes_touch_themselves_alike]
 }
 
 /// Bits that no geom meets; without any MuJoCo 3.3.0 crashes.
@@ -14,8 +16,10 @@ const ALONE: &str = "<contact contype='2' conaffinity='0' selfcollide='none' int
 const HELD: &str = "<edge equality='true' solref='.01 .8' solimp='.8 .9 .01 .4 3' damping='.01'/>";
 const SOFT: &str = "<elasticity young='3e2' poisson='.2' thickness='1e-2' damping='.002'/>";
 
-/// Checks that all compiled arrays agree, and steps from states out of balance: at rest the constraints consist of rounding errors.
-fn agrees(sides: &mut Sides, what: &str) {
+/// Checks that all compiled arrays agree, and steps from states out of balance: at rest the constraints consist of rounding errors. Returns
+/// how many contacts the states have together.
+fn agrees(sides: &mut Sides, what: &str) -> usize {
+    let mut touching = 0;
     for measured in sides.arrays() {
         assert!(measured.agrees(), "{what}: {measured:?}");
     }
@@ -23,26 +27,33 @@ fn agrees(sides: &mut Sides, what: &str) {
         let (mut state, mut rng) = (sides.new_state(), Rng::with_seed(seed));
         state.qpos.iter_mut().for_each(|v| *v += 0.02 * rng.f64() - 0.01);
         state.qvel.iter_mut().for_each(|v| *v = 0.6 * rng.f64() - 0.3);
-        let Stepped::Compared { measured, .. } = sides.step_from(&state) else {
+        let Stepped::Compared { measured, contacts, .. } = sides.step_from(&state) else {
             panic!("{what}: state {seed} is not compared");
         };
+        touching += contacts;
         measured
             .iter()
             .for_each(|measured| assert!(measured.agrees(), "{what}: state {seed}, {measured:?}"));
     }
+    touching
 }
 
-fn compare(world: &str, behind: &str) {
+fn compare(world: &str, behind: &str) -> usize {
     let defaults = "<option timestep='.001'/><default><joint damping='.05' armature='.01'/></default>";
-    let text = format!("<mujoco>{defaults}<worldbody>{world}</worldbody>{behind}</mujoco>");
-    let mut sides = match Sides::load(needed(), &text) {
+    compare_document(&format!(
+        "<mujoco>{defaults}<worldbody>{world}</worldbody>{behind}</mujoco>"
+    ))
+}
+
+fn compare_document(text: &str) -> usize {
+    let mut sides = match Sides::load(needed(), text) {
         Taken::Both(sides) => sides,
         Taken::ByOne(measured) => panic!("{measured:?}: {text}"),
         Taken::Refused(why) => panic!("{why}: {text}"),
         Taken::Stricter(why) => panic!("{why}: {text}"),
     };
     assert!(sides.model.nflex() > 0, "{text}");
-    agrees(&mut sides, &text);
+    agrees(&mut sides, text)
 }
 
 /// A `<flexcomp>` with a mass of 2 kg, of points 10 cm apart or so.
@@ -175,4 +186,141 @@ fn refused(world: &str) {
     let text = format!("<mujoco><worldbody>{world}</worldbody></mujoco>");
     let taken = Sides::load(needed(), &text);
     assert!(matches!(taken, Taken::Refused(_)), "one side takes {text}");
+}
+
+const CLOTH: &str = "dim='2' count='4 4 1' mass='.2' spacing='.05 .05 .05' radius='.01'";
+const ROPE: &str = "dim='1' count='6 1 1' mass='.2' spacing='.05 .05 .05' radius='.01'";
+const CUBE: &str = "dim='3' count='3 3 3' mass='.2' spacing='.05 .05 .05' radius='.005'";
+const PLANE: &str = "<geom type='plane' size='1 1 1'/>";
+const OUTSIDE: &str = "selfcollide='none' internal='false'";
+
+/// A flex at a place, with the attributes of its contacts.
+fn touching(name: &str, shape: &str, place: &str, contact: &str) -> String {
+    let elastic = if shape.contains("dim='3'") {
+        "<elasticity young='1e3' poisson='.1' damping='.01'/>"
+    } else {
+        "<edge equality='true' damping='.01'/>"
+    };
+    format!("<flexcomp name='{name}' {shape} {place}><contact {contact}/>{elastic}</flexcomp>")
+}
+
+/// Compares a document whose flexes touch something.
+fn collide(options: &str, world: &str, behind: &str) {
+    let text = format!("<mujoco>{options}<worldbody>{world}</worldbody>{behind}</mujoco>");
+    assert!(compare_document(&text) > 0, "nothing touches: {text}");
+}
+
+fn flexes_touch_geoms_alike() {
+    let assets = "<asset><mesh name='m' vertex='-.1 -.1 -.1 .1 -.1 -.1 0 .1 -.1 0 0 .1 .1 .1 .05'/></asset>";
+    for (geom, height) in [
+        ("type='plane' size='1 1 1' euler='2 3 0'", 0.01),
+        ("type='sphere' size='.08'", 0.08),
+        ("type='capsule' size='.05 .08' euler='20 70 0'", 0.06),
+        ("type='box' size='.08 .07 .06' euler='5 8 0'", 0.07),
+        ("type='cylinder' size='.08 .06' euler='5 8 0'", 0.07),
+        ("type='ellipsoid' size='.08 .06 .1'", 0.1),
+        ("type='mesh' mesh='m'", 0.06),
+    ] {
+        for (shape, above) in [(CLOTH, 0.0), (ROPE, 0.0), (CUBE, 0.05)] {
+            let place = format!("pos='0 0 {}'", height + above);
+            for condim in [1, 3] {
+                let flex = touching("c", shape, &place, &format!("condim='{condim}' {OUTSIDE}"));
+                let geom = format!("<geom condim='{condim}' {geom}/>");
+                collide("", &format!("{geom}{flex}"), assets);
+                if !geom.contains("plane") && condim == 3 {
+                    collide("", &format!("<body><freejoint/>{geom}</body>{flex}"), assets);
+                }
+            }
+        }
+    }
+}
+
+fn parameters_of_contacts_agree() {
+    let contact = format!(
+        "friction='.4 .01 .001' margin='.01' gap='.004' solref='.03 1' solimp='.8 .9 .01' solmix='2' {OUTSIDE}"
+    );
+    let solid = "<geom type='box' size='.08 .07 .06' friction='.7 .02 .002' margin='.005' solref='.01 .9'/>";
+    let cloth = touching("c", CLOTH, "pos='0 0 .07'", &contact);
+    for options in [
+        "<option cone='elliptic'/>",
+        "<option jacobian='dense'/>",
+        "<option jacobian='sparse' cone='elliptic' impratio='3'/>",
+        "<option><flag midphase='disable'/></option>",
+        "<option><flag nativeccd='disable'/></option>",
+        "<option timestep='.001' integrator='RK4'/>",
+        "<option integrator='implicitfast'/>",
+    ] {
+        collide(options, &format!("{solid}{cloth}"), "");
+    }
+    let cube = touching("c", CUBE, "pos='0 0 .12'", "priority='2' friction='.1 .01 .001'");
+    collide("", &format!("{solid}{PLANE}{cube}"), "");
+    for layers in [1, 2] {
+        let contact = format!("activelayers='{layers}' {OUTSIDE}");
+        let large = CUBE.replace("3 3 3", "4 4 4");
+        let cube = touching("c", &large, "pos='0 0 .08'", &contact);
+        collide("", &format!("{solid}{cube}"), "");
+    }
+    // bits that meet in one direction alone
+    let cloth = touching(
+        "c",
+        CLOTH,
+        "pos='0 0 .07'",
+        &format!("contype='4' conaffinity='2' {OUTSIDE}"),
+    );
+    let alone = solid.replace("<geom", "<geom contype='2' conaffinity='8'");
+    collide("", &format!("{alone}{cloth}"), "");
+    let felt =
+        "<body><freejoint/><geom type='box' size='.08 .07 .06'/><site name='s' type='box' size='.1 .1 .1'/></body>";
+    let sensors = "<sensor><touch site='s'/><force site='s'/><torque site='s'/><accelerometer site='s'/></sensor>";
+    let cloth = touching("c", CLOTH, "pos='0 0 .07'", OUTSIDE);
+    collide("", &format!("{felt}{cloth}"), sensors);
+}
+
+fn flexes_touch_each_other_alike() {
+    let above = |shape: &str| if shape == CUBE { 0.05 } else { 0.0 };
+    for first in [CLOTH, ROPE, CUBE] {
+        for second in [CLOTH, ROPE, CUBE] {
+            let place = format!("pos='.01 .02 {}' euler='0 0 30'", 0.01 + above(first) + above(second));
+            for condim in [1, 3] {
+                let contact = format!("condim='{condim}' {OUTSIDE}");
+                let one = touching("c", first, "pos='0 0 0'", &contact);
+                let other = touching("e", second, &place, &contact);
+                collide("", &format!("{one}{other}"), "");
+            }
+        }
+    }
+    let one = touching("c", CUBE, "pos='0 0 .05'", OUTSIDE);
+    let other = touching("e", CLOTH, "pos='0 0 .11'", OUTSIDE);
+    collide("", &format!("{PLANE}{one}{other}"), "");
+    let rigid = format!(
+        "<body name='a'><freejoint/><geom size='.02'/><flexcomp name='r' {CUBE} rigid='true'><contact {OUTSIDE}/></flexcomp></body>"
+    );
+    collide("", &format!("{rigid}{other}{PLANE}"), "");
+}
+
+fn flexes_touch_themselves_alike() {
+    // points are hardly farther apart than they are thick
+    let near = |shape: &str| shape.replace(".05 .05 .05", ".03 .03 .03").replace("='.005'", "='.01'");
+    // pairs that MuJoCo finds in its tree come in another order: `bvh`, and `auto` of a cube
+    for way in ["narrow", "sap", "auto"] {
+        for shape in [CLOTH, ROPE, CUBE]
+            .into_iter()
+            .filter(|shape| way != "auto" || *shape != CUBE)
+        {
+            for condim in [1, 3] {
+                let contact = format!("condim='{condim}' selfcollide='{way}' internal='false'");
+                collide("", &touching("c", &near(shape), "", &contact), "");
+            }
+        }
+    }
+    for shape in [CLOTH, ROPE, CUBE] {
+        let inside = touching("c", &near(shape), "pos='0 0 .05'", "internal='true' selfcollide='none'");
+        collide("", &format!("{inside}<geom type='sphere' size='.03'/>"), "");
+        if shape == CUBE {
+            continue;
+        }
+        // as it is without attributes
+        let both = touching("c", &near(shape), "pos='0 0 .02'", "");
+        collide("", &format!("{PLANE}{both}"), "");
+    }
 }

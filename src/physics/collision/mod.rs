@@ -5,6 +5,7 @@
 
 mod boxes;
 mod broad;
+mod flexes;
 mod pairs;
 mod sweep;
 mod trees;
@@ -12,6 +13,7 @@ mod trees;
 use crate::contact::{ContactOptions, Quirks};
 use crate::model::Model;
 
+pub use flexes::FlexSweep;
 pub use pairs::{ContactRules, GeomPair, PairTable};
 pub use sweep::Sweep;
 pub use sweep::placed;

@@ -5,7 +5,7 @@ mod rules;
 use super::trees::BodyTrees;
 use crate::contact::needs_convex;
 use crate::math::{MINVAL, order};
-use crate::model::{GeomType, Model};
+use crate::model::{Flex, GeomType, Model};
 use crate::state::Contact;
 pub use rules::ContactRules;
 
@@ -199,48 +199,91 @@ fn explicit(model: &Model, p: usize) -> GeomPair {
     }
 }
 
-/// Mixes the parameters of two geoms: those of the geom of higher priority; at equal priority the greater dimension,
-/// the greater friction and averages weighted by `solmix`.
-fn dynamic(model: &Model, geom: [usize; 2]) -> GeomPair {
-    let [a, b] = geom;
-    let (pa, pb) = (model.geom_priority[a], model.geom_priority[b]);
+/// The properties of a geom or a flex of which the parameters of contacts are mixed.
+pub(super) struct ContactMaterial {
+    priority: i32,
+    dim: usize,
+    friction: [f64; 3],
+    solmix: f64,
+    solref: [f64; 2],
+    solimp: [f64; 5],
+    margin: f64,
+    gap: f64,
+}
+
+impl ContactMaterial {
+    /// Returns that of a geom.
+    pub(super) fn of_geom(model: &Model, g: usize) -> Self {
+        Self {
+            priority: model.geom_priority[g],
+            dim: model.geom_condim[g],
+            friction: model.geom_friction[g],
+            solmix: model.geom_solmix[g],
+            solref: model.geom_solref[g],
+            solimp: model.geom_solimp[g],
+            margin: model.geom_margin[g],
+            gap: model.geom_gap[g],
+        }
+    }
+
+    /// Returns that of a flex.
+    pub(super) fn of_flex(flex: &Flex) -> Self {
+        Self {
+            priority: flex.priority,
+            dim: flex.condim,
+            friction: flex.friction,
+            solmix: flex.solmix,
+            solref: flex.solref,
+            solimp: flex.solimp,
+            margin: flex.margin,
+            gap: flex.gap,
+        }
+    }
+}
+
+/// Mixes the parameters of contacts, whose geometry and geoms are not filled in: those of the higher priority; at equal priority the greater
+/// dimension, the greater friction and averages weighted by `solmix`.
+#[doc(alias = "mj_contactParam")]
+pub(super) fn mixed(a: &ContactMaterial, b: &ContactMaterial) -> Contact {
     let (dim, slip, solref, solimp);
-    if pa != pb {
-        let g = if pa > pb { a } else { b };
-        dim = model.geom_condim[g];
-        slip = model.geom_friction[g];
-        solref = model.geom_solref[g];
-        solimp = model.geom_solimp[g];
+    if a.priority != b.priority {
+        let higher = if a.priority > b.priority { a } else { b };
+        (dim, slip) = (higher.dim, higher.friction);
+        (solref, solimp) = (higher.solref, higher.solimp);
     } else {
-        dim = model.geom_condim[a].max(model.geom_condim[b]);
-        slip = std::array::from_fn(|k| model.geom_friction[a][k].max(model.geom_friction[b][k]));
-        let (wa, wb) = (model.geom_solmix[a], model.geom_solmix[b]);
-        let mix = match (wa >= MINVAL, wb >= MINVAL) {
-            (true, true) => wa / (wa + wb),
+        dim = a.dim.max(b.dim);
+        slip = std::array::from_fn(|k| a.friction[k].max(b.friction[k]));
+        let mix = match (a.solmix >= MINVAL, b.solmix >= MINVAL) {
+            (true, true) => a.solmix / (a.solmix + b.solmix),
             (false, false) => 0.5,
             (first, _) => f64::from(first),
         };
         let blend = |x: f64, y: f64| mix * x + (1.0 - mix) * y;
-        let (ra, rb) = (model.geom_solref[a], model.geom_solref[b]);
-        solref = if ra[0] > 0.0 && rb[0] > 0.0 {
-            [blend(ra[0], rb[0]), blend(ra[1], rb[1])]
+        solref = if a.solref[0] > 0.0 && b.solref[0] > 0.0 {
+            [blend(a.solref[0], b.solref[0]), blend(a.solref[1], b.solref[1])]
         } else {
-            [ra[0].min(rb[0]), ra[1].min(rb[1])]
+            [a.solref[0].min(b.solref[0]), a.solref[1].min(b.solref[1])]
         };
-        solimp = std::array::from_fn(|k| blend(model.geom_solimp[a][k], model.geom_solimp[b][k]));
+        solimp = std::array::from_fn(|k| blend(a.solimp[k], b.solimp[k]));
     }
-    let margin = model.geom_margin[a].max(model.geom_margin[b]);
-    let gap = model.geom_gap[a].max(model.geom_gap[b]);
-    let mut t = template(geom, dim, [slip[0], slip[0], slip[1], slip[2], slip[2]], solref, solimp);
-    t.includemargin = margin - gap;
+    let friction = [slip[0], slip[0], slip[1], slip[2], slip[2]];
+    Contact {
+        includemargin: a.margin.max(b.margin) - a.gap.max(b.gap),
+        ..template([usize::MAX; 2], dim, friction, solref, solimp)
+    }
+}
+
+/// Returns a pair of two geoms with mixed parameters.
+fn dynamic(model: &Model, geom: [usize; 2]) -> GeomPair {
+    let [a, b] = geom.map(|g| ContactMaterial::of_geom(model, g));
     GeomPair {
         geom,
-        margin,
+        margin: a.margin.max(b.margin),
         midphase: midphase(model, geom),
         body_margin: geom
             .into_iter()
             .fold(0.0, |margin, g| body_margin(model, g).max(margin)),
-        template: t,
+        template: Contact { geom, ..mixed(&a, &b) },
     }
 }
 

@@ -112,6 +112,11 @@ impl Sweep {
         within(Limits::DEFAULT.contacts, s.contact.len(), "contacts", s.step)
     }
 
+    /// Returns the options and the working memory of the routines, for contacts of flexes.
+    pub fn tools(&mut self) -> (&ContactOptions, &mut Scratch) {
+        (&self.options, &mut self.scratch)
+    }
+
     /// Adds the contacts of a pair.
     #[doc(alias = "mj_collideGeoms")]
     #[inline(always)]

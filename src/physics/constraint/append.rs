@@ -143,6 +143,46 @@ impl RowAppender<'_> {
         self.block_mut().ncol = ncol;
     }
 
+    /// Starts a block for the sum of the motions of a point of several bodies, each times a weight, over the tiles that move any of
+    /// them. `rows` turns translation and rotation of a tile into rows.
+    pub(super) fn weighted(
+        &mut self,
+        (kind, id, dim): (ConstraintType, usize, usize),
+        s: &State,
+        point: Vec3,
+        bodies: &[(usize, f64)],
+        mut rows: impl FnMut(&[Lanes; 3], &[Lanes; 3], &mut Vec<Lanes>),
+    ) {
+        self.block(kind, id, dim);
+        let (model, topology) = (self.model, self.topology);
+        let mut reached = 0;
+        let mut ncol = 0;
+        loop {
+            let next = |&(b, _): &(usize, f64)| {
+                let tiles = topology.body_tiles(b);
+                tiles.get(tiles.partition_point(|t| t.0 < reached)).copied()
+            };
+            let Some(tile) = bodies.iter().filter_map(next).map(|(tile, _)| tile).min() else {
+                break;
+            };
+            let (mut translation, mut rotation) = ([[0.0; 4]; 3], [[0.0; 4]; 3]);
+            let cdof = &self.axes[tile as usize];
+            for body in bodies {
+                if let Some((_, lanes)) = next(body).filter(|next| next.0 == tile) {
+                    let &(b, weight) = body;
+                    let offset = sub(point, s.subtree_com[model.body_rootid[b]]);
+                    let join = |v: f64, w: f64| v + weight * w;
+                    add_motion(cdof, lanes, offset, join, &mut translation, &mut rotation);
+                }
+            }
+            self.efc.cols.push(tile);
+            rows(&translation, &rotation, &mut self.efc.jac);
+            ncol += 1;
+            reached = tile + 1;
+        }
+        self.block_mut().ncol = ncol;
+    }
+
     /// Appends a row whose impedance follows from `violation` (the distance to the margin, or the norm of a weld's
     /// error). Returns its damping.
     #[inline(always)]

@@ -1,22 +1,33 @@
 //! Forces of contacts from those of their rows.
 
 use crate::model::{ConeType, Model};
-use crate::state::State;
+use crate::state::{Contact, State};
 
 /// Fills in the force of each contact (MuJoCo's `mj_contactForce`).
 #[doc(alias = "mj_contactForce")]
 #[inline(always)]
 pub fn contact_forces(model: &Model, s: &mut State) {
+    let (cone, rows) = (model.opt.cone, &s.efc.force[..]);
     for c in &mut s.contact {
-        c.force = [0.0; 6];
-        match c.efc_address {
-            Some(row) if model.opt.cone == ConeType::Pyramidal && c.dim > 1 => {
-                c.force = decode_pyramid(&s.efc.force[row..row + 2 * (c.dim - 1)], &c.friction);
-            }
-            Some(row) => c.force[..c.dim].copy_from_slice(&s.efc.force[row..row + c.dim]),
-            None => {}
-        }
+        c.force = force(c, cone, rows);
     }
+    for c in &mut s.flex_contact {
+        c.contact.force = force(&c.contact, cone, rows);
+    }
+}
+
+/// Returns the force and torque of a contact from those of all rows.
+#[inline(always)]
+fn force(c: &Contact, cone: ConeType, rows: &[f64]) -> [f64; 6] {
+    let mut force = [0.0; 6];
+    match c.efc_address {
+        Some(row) if cone == ConeType::Pyramidal && c.dim > 1 => {
+            force = decode_pyramid(&rows[row..row + 2 * (c.dim - 1)], &c.friction);
+        }
+        Some(row) => force[..c.dim].copy_from_slice(&rows[row..row + c.dim]),
+        None => {}
+    }
+    force
 }
 
 /// Returns the force and torque in the frame of a contact that the forces along the edges of its pyramid add up to

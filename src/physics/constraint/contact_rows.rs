@@ -47,18 +47,22 @@ fn cone(rows: &mut RowAppender, s: &State, i: usize) -> bool {
         (b1, c.pos),
         (b2, c.pos),
         #[inline(always)]
-        |translation, rotation, out| {
-            for r in 0..c.dim {
-                out.push(contact_row(c, r, translation, rotation));
-            }
-        },
+        |translation, rotation, out| cone_lines(c, translation, rotation, out),
     );
     if rows.block_mut().ncol == 0 && !keeps_without_effect(model, [b1, b2]) {
         rows.drop_block();
         return false;
     }
-    let first = rows.efc.pos.len();
     let diag = s.params.body_invweight0[b1][0] + s.params.body_invweight0[b2][0];
+    cone_parameters(rows, c, diag);
+    true
+}
+
+/// Gives the last block, of a contact with an elliptic cone or without friction, its rows; `diag` approximates the diagonal of `J M^-1 J'`.
+#[inline(always)]
+pub(super) fn cone_parameters(rows: &mut RowAppender, c: &Contact, diag: f64) {
+    let model = rows.model;
+    let first = rows.efc.pos.len();
     let spec = RowParameters {
         solref: c.solref,
         solimp: c.solimp,
@@ -80,7 +84,6 @@ fn cone(rows: &mut RowAppender, s: &State, i: usize) -> bool {
         rows.efc.d[first + 1] = 1.0 / sliding;
         rows.cone(c.friction[0] * (sliding / normal).sqrt(), c.friction);
     }
-    true
 }
 
 /// Appends the rows of a contact with a pyramidal cone: for each direction of friction two edges, the normal plus and
@@ -100,28 +103,29 @@ fn pyramid(rows: &mut RowAppender, s: &State, i: usize) -> bool {
         (b1, c.pos),
         (b2, c.pos),
         #[inline(always)]
-        |translation, rotation, out| {
-            let normal = contact_row(c, 0, translation, rotation);
-            for r in 1..c.dim {
-                let (along, f) = (contact_row(c, r, translation, rotation), c.friction[r - 1]);
-                out.push(std::array::from_fn(|k| normal[k] + f * along[k]));
-                out.push(std::array::from_fn(|k| normal[k] - f * along[k]));
-            }
-        },
+        |translation, rotation, out| pyramid_lines(c, translation, rotation, out),
     );
     if rows.block_mut().ncol == 0 && !keeps_without_effect(model, [b1, b2]) {
         rows.drop_block();
         return false;
     }
-    let first = rows.efc.pos.len();
     let [w1, w2] = [b1, b2].map(|b| s.params.body_invweight0[b][0]);
+    pyramid_parameters(rows, c, w1 + w2);
+    true
+}
+
+/// Gives the last block, of a contact with a pyramidal cone, its rows; `diag` approximates the diagonal of `J M^-1 J'` along the normal.
+#[inline(always)]
+pub(super) fn pyramid_parameters(rows: &mut RowAppender, c: &Contact, diag: f64) {
+    let model = rows.model;
+    let first = rows.efc.pos.len();
     let spec = RowParameters {
         solref: c.solref,
         solimp: c.solimp,
-        diag: (w1 + w2) * (1.0 + c.friction[0] * c.friction[0]),
+        diag: diag * (1.0 + c.friction[0] * c.friction[0]),
     };
     let violation = c.dist - c.includemargin;
-    for _ in 0..edges {
+    for _ in 0..2 * (c.dim - 1) {
         rows.row(c.dist, c.includemargin, violation, spec);
     }
     let mu = c.friction[0] * (1.0 / model.opt.impratio.max(MINVAL)).sqrt();
@@ -129,7 +133,25 @@ fn pyramid(rows: &mut RowAppender, s: &State, i: usize) -> bool {
     rows.efc.r[first..].fill(r);
     rows.efc.d[first..].fill(1.0 / r);
     rows.cone(mu, c.friction);
-    true
+}
+
+/// Writes the rows of a tile for an elliptic cone, or none.
+#[inline(always)]
+pub(super) fn cone_lines(c: &Contact, translation: &[Lanes; 3], rotation: &[Lanes; 3], out: &mut Vec<Lanes>) {
+    for r in 0..c.dim {
+        out.push(contact_row(c, r, translation, rotation));
+    }
+}
+
+/// Writes the rows of a tile for a pyramidal cone.
+#[inline(always)]
+pub(super) fn pyramid_lines(c: &Contact, translation: &[Lanes; 3], rotation: &[Lanes; 3], out: &mut Vec<Lanes>) {
+    let normal = contact_row(c, 0, translation, rotation);
+    for r in 1..c.dim {
+        let (along, f) = (contact_row(c, r, translation, rotation), c.friction[r - 1]);
+        out.push(std::array::from_fn(|k| normal[k] + f * along[k]));
+        out.push(std::array::from_fn(|k| normal[k] - f * along[k]));
+    }
 }
 
 /// Tells whether MuJoCo gives rows to a contact of two bodies that no degree of freedom moves relative to each other. Such

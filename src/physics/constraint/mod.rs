@@ -14,6 +14,7 @@ mod contact_force;
 mod contact_rows;
 mod dual;
 mod equality_rows;
+mod flex_rows;
 mod friction;
 mod hessian;
 mod impedance;

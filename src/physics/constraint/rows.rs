@@ -3,6 +3,7 @@
 use super::append::{RowAppender, RowParameters};
 use super::contact_rows::contact;
 use super::equality_rows::equalities;
+use super::flex_rows::flex_contact;
 use super::jacobian::{Jacobian, product};
 use super::joint_rows::joint_limits;
 use super::tendon_rows::{tendon_friction, tendon_limits};
@@ -84,8 +85,18 @@ impl RowBuilder {
             tendon_limits(&mut rows, s);
         }
         // last, as in MuJoCo: Gauss and Seidel's method visits rows in this order
-        for i in 0..s.contact.len() {
-            contact(&mut rows, s, i);
+        let (mut i, mut flexes) = (0, 0);
+        loop {
+            let end = s.flex_contact.get(flexes).map_or(s.contact.len(), |c| c.after);
+            while i < end {
+                contact(&mut rows, s, i);
+                i += 1;
+            }
+            if flexes == s.flex_contact.len() {
+                break;
+            }
+            flex_contact(&mut rows, s, flexes);
+            flexes += 1;
         }
         self.add_velocities(&mut efc, s);
         s.efc = efc;

@@ -2,12 +2,13 @@
 //! cylinders and cylinders with boxes.
 
 use super::epa::{Overlap, epa};
+use super::flex::FlexPart;
 use super::gjk::{GjkLimits, Simplex, gjk};
 use super::mesh::MeshShape;
 use super::polytope::Polytope;
 use super::support::{Ball, Capsule, Cuboid, Cylinder, Ellipsoid, MinkowskiDifference, Point, Segment, Support};
-use super::{BareContact, ContactOptions, MAXVAL, PlacedGeom, add_scaled, column, dot, sub};
-use crate::math::{Vec3, add, scale, unit};
+use super::{BareContact, ContactOptions, MAXVAL, PlacedGeom, Scratch, add_scaled, column, dot, sub};
+use crate::math::{MAT3_ID, Vec3, add, scale, unit};
 use crate::model::GeomType;
 
 /// Finds the deepest contact of two convex geoms, and leaves the overlap where it comes from one.
@@ -38,6 +39,56 @@ pub(super) fn convex(
     }
 }
 
+/// Finds the contact of a geom, anything but a plane, and a part of a flex with its shape.
+pub(super) fn against(
+    geom: &PlacedGeom,
+    (part, shape): (&FlexPart, &dyn Support),
+    margin: f64,
+    options: &ContactOptions,
+    scratch: &mut Scratch,
+) -> Option<BareContact> {
+    let mut find = ConvexPair {
+        a: geom,
+        b: &stand_in(part.centre()),
+        margin,
+        options,
+        polytope: &mut scratch.polytope,
+        overlap: &mut None,
+    };
+    find.against(shape)
+}
+
+/// Finds the contact of two shapes, each with its centre.
+pub(super) fn of_shapes(
+    (a, centre_a): (&dyn Support, Vec3),
+    (b, centre_b): (&dyn Support, Vec3),
+    margin: f64,
+    options: &ContactOptions,
+    scratch: &mut Scratch,
+) -> Option<BareContact> {
+    let mut find = ConvexPair {
+        a: &stand_in(centre_a),
+        b: &stand_in(centre_b),
+        margin,
+        options,
+        polytope: &mut scratch.polytope,
+        overlap: &mut None,
+    };
+    find.deep(a, b)
+}
+
+/// Returns a geom that has the centre of a shape and nothing else of it.
+fn stand_in(pos: Vec3) -> PlacedGeom<'static> {
+    PlacedGeom {
+        kind: GeomType::Sphere,
+        size: [0.0; 3],
+        pos,
+        mat: &MAT3_ID,
+        mesh: None,
+        hfield: None,
+    }
+}
+
 /// Two convex geoms, with the options and buffers of the search for their contact.
 struct ConvexPair<'a, 'g> {
     a: &'a PlacedGeom<'g>,
@@ -63,8 +114,8 @@ impl ConvexPair<'_, '_> {
     /// Finds the contact of a pair with a mesh or an ellipsoid, anything but a plane: one copy of the routines for all, since MIMo has
     /// neither.
     fn any(&mut self) -> Option<BareContact> {
-        use GeomType::{Box, Capsule as Pill, Cylinder as Rod, Ellipsoid as Egg, Mesh, Sphere};
-        let (a, b, margin) = (self.a, self.b, self.margin);
+        use GeomType::{Box, Cylinder as Rod, Ellipsoid as Egg, Mesh};
+        let (b, margin) = (self.b, self.margin);
         let other: &dyn Support = match b.kind {
             Egg => &Ellipsoid::new(b, margin),
             Rod => &Cylinder::new(b, margin),
@@ -72,6 +123,13 @@ impl ConvexPair<'_, '_> {
             Mesh => &MeshShape::new(b, b.mesh?, margin),
             _ => return None,
         };
+        self.against(other)
+    }
+
+    /// Finds the contact of the first geom, anything but a plane, and a shape.
+    fn against(&mut self, other: &dyn Support) -> Option<BareContact> {
+        use GeomType::{Box, Capsule as Pill, Cylinder as Rod, Ellipsoid as Egg, Mesh, Sphere};
+        let (a, margin) = (self.a, self.margin);
         match a.kind {
             Sphere => {
                 let (core, whole) = (Point::new(a), Ball::new(a, margin));

@@ -10,6 +10,11 @@ pub fn from_normal(normal: Vec3) -> Mat3 {
     complete(x, default_hint(x))
 }
 
+/// Returns a frame as [`from_normal`] does, of a normal of unit length.
+pub(super) fn of_unit(normal: Vec3) -> Mat3 {
+    complete(normal, default_hint(normal))
+}
+
 /// Returns a frame with the given normal as first row and, as far as it is not along the normal, the hint as second.
 ///
 /// A hint shorter than 0.5 is not used. Where hint and normal are parallel the tangents come from rounding noise, as in

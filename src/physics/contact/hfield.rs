@@ -3,6 +3,7 @@
 use super::ccd_support::CcdSupport;
 use super::epa::epa;
 use super::fix_normal::fixed;
+use super::flex::FlexPart;
 use super::gjk::{GjkLimits, Simplex, gjk};
 use super::mesh::MeshShape;
 use super::polytope::Polytope;
@@ -102,6 +103,44 @@ pub(super) fn hfield(
             iterations: options.ccd_iterations,
         };
         let touch = |prism: &Prism| penetration(prism, (&other, local.pos), &limits);
+        touch_cells(field, &cells, margin, touch, found);
+    }
+}
+
+/// Appends the contacts of a height field and an element of a flex.
+pub(super) fn hfield_flex(
+    a: &PlacedGeom,
+    element: &FlexPart,
+    margin: f64,
+    options: &ContactOptions,
+    polytope: &mut Polytope,
+    out: &mut Vec<ContactPoint>,
+) {
+    let Some(field) = a.hfield else { return };
+    let local = element.within(a);
+    let Some(cells) = cells(field, &local.bare(), margin) else {
+        return;
+    };
+    let found = |BareContact { dist, pos, normal }: BareContact| {
+        let pos = add(mat_vec(a.mat, pos), a.pos);
+        let frame = frame::from_normal(mat_vec(a.mat, normal));
+        out.push(ContactPoint { dist, pos, frame });
+    };
+    let (pos, whole) = (local.centre(), local.grown(0.5 * margin));
+    if options.nativeccd {
+        let other = LocalGeom {
+            pos,
+            core: None,
+            whole: &whole,
+        };
+        let touch = |prism: &Prism| overlap(prism, &other, options, polytope);
+        touch_cells(field, &cells, margin, touch, found);
+    } else {
+        let limits = mpr::MprLimits {
+            tolerance: options.ccd_tolerance,
+            iterations: options.ccd_iterations,
+        };
+        let touch = |prism: &Prism| penetration(prism, (&whole, pos), &limits);
         touch_cells(field, &cells, margin, touch, found);
     }
 }

@@ -49,6 +49,7 @@ mod distance;
 mod epa;
 mod faces;
 mod fix_normal;
+mod flex;
 pub mod frame;
 mod gjk;
 mod hfield;
@@ -66,6 +67,7 @@ mod tolerance;
 mod triangle;
 
 pub use distance::distance;
+pub use flex::{FlexPart, element_element, geom_element, vertex_element};
 
 use crate::MAXVAL;
 use crate::math::{Mat3, Vec3, add_scaled, column, dot, sub};

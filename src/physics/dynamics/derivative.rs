@@ -66,17 +66,26 @@ impl VelocityDerivative {
         }
     }
 
-    /// Adds the damping of joints and tendons, and the resistance of the medium.
+    /// Adds the damping of joints, edges of flexes and tendons, and the resistance of the medium.
     fn passive(&mut self, model: &Model, topology: &Topology, s: &State, out: &mut TreeMatrix) {
         for (d, damping) in s.params.dof_damping.iter().enumerate() {
             out.add(topology, d, d, -damping);
         }
+        for flex in model
+            .flexes
+            .iter()
+            .filter(|flex| !flex.rigid && flex.edgedamping != 0.0)
+        {
+            for (k, _) in flex.edge_rigid.iter().enumerate().filter(|(_, rigid)| !**rigid) {
+                let e = flex.edgeadr + k;
+                let arms = &s.flexedge_j[topology.flexedges.range(e)];
+                self.damper(topology, topology.flexedges.row(e), arms, -flex.edgedamping, out);
+            }
+        }
         for (t, damping) in model.tendon_damping.iter().enumerate() {
             if *damping > 0.0 {
-                let entries = topology.tendons.row(t).iter().zip(&s.ten_j[topology.tendons.range(t)]);
-                self.entries.clear();
-                self.entries.extend(entries.map(|(&d, &arm)| (d as usize, arm)));
-                out.add_square(topology, &self.entries, -damping);
+                let arms = &s.ten_j[topology.tendons.range(t)];
+                self.damper(topology, topology.tendons.row(t), arms, -damping, out);
             }
         }
         if model.opt.density == 0.0 && model.opt.viscosity == 0.0 {
@@ -108,6 +117,14 @@ impl VelocityDerivative {
                 out.add_square(topology, &self.entries, slope);
             }
         }
+    }
+
+    /// Adds what resists a length that changes with coordinates by `arms`.
+    fn damper(&mut self, topology: &Topology, dofs: &[u32], arms: &[f64], slope: f64, out: &mut TreeMatrix) {
+        self.entries.clear();
+        let entries = dofs.iter().zip(arms).map(|(&d, &arm)| (d as usize, arm));
+        self.entries.extend(entries);
+        out.add_square(topology, &self.entries, slope);
     }
 
     /// Takes off the derivative of Coriolis and centrifugal forces: the recursive Newton-Euler algorithm, differentiated by one

@@ -9,8 +9,10 @@ use super::{Simulation, array};
 /// A MuJoCo contact.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Contact {
-    /// The geoms.
+    /// The geoms; `usize::MAX` where a side is a flex.
     pub geom: [usize; 2],
+    /// Flex, element and vertex of each side, if it has them.
+    pub flex: [[Option<usize>; 3]; 2],
     /// Distance, m.
     pub dist: f64,
     /// Position, m.
@@ -55,6 +57,7 @@ impl Simulation {
         unsafe { (self.api.contact_force)(self.model, self.data, k as c_int, force.as_mut_ptr()) };
         Contact {
             geom: [0, 1].map(|side| usize::try_from(integer("geom", side)).unwrap_or(usize::MAX)),
+            flex: [0, 1].map(|side| ["flex", "elem", "vert"].map(|name| usize::try_from(integer(name, side)).ok())),
             dist: number("dist", 0),
             pos: std::array::from_fn(|i| number("pos", i)),
             frame: std::array::from_fn(|i| number("frame", i)),

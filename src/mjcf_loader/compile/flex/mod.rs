@@ -13,7 +13,7 @@ use crate::document::Document;
 use crate::error::{ErrorKind, LoadError};
 use crate::flex::Flex;
 use crate::math::{Quat, Vec3, add, cross, dot, quat_mul, quat_rotate, sub};
-use crate::model::{self, Arrays, FlexSelfCollide};
+use crate::model::{self, Arrays};
 use crate::relation::EqualityElements;
 pub(crate) use comp::expand_flexes;
 
@@ -32,8 +32,6 @@ const STIFF: &str = "edges have a stiffness in flexes of lines (dim=\"1\") alone
 const POISSON: &str = "poisson must be from 0 to below 0.5";
 const THICKNESS: &str = "triangles with young need a positive thickness";
 const FLAT: &str = "an element has no area or volume, or numbers too large for elasticity";
-
-const TOUCHING: &str = "contacts of flexes are not simulated: give the flex <contact contype=\"0\" conaffinity=\"0\"/>, or other bits than all geoms have";
 
 /// Vertices of the edges of an element, by dimension.
 const EDGES: [&[[usize; 2]]; 3] = [
@@ -73,24 +71,7 @@ pub(super) fn compile_flexes(
         (compiled.vertadr, compiled.edgeadr) = (arrays.nflexvert(), arrays.nflexedge());
         arrays.flexes.push(compiled);
     }
-    let touching = arrays.flexes.iter().position(|flex| touches(flex, arrays));
-    match touching {
-        Some(flex) => Err(context.invalid(document.flexes[flex].at, TOUCHING)),
-        None => Ok(()),
-    }
-}
-
-/// Tells whether a flex may touch something: a geom, another flex or itself.
-fn touches(flex: &model::Flex, arrays: &Arrays) -> bool {
-    let meets = |contype: u32, conaffinity: u32| flex.contype & conaffinity | contype & flex.conaffinity != 0;
-    let mut geoms = arrays.geom_contype.iter().zip(&arrays.geom_conaffinity);
-    let mut others = arrays.flexes.iter().filter(|other| !std::ptr::eq(*other, flex));
-    let itself = !flex.rigid && flex.contype & flex.conaffinity != 0;
-    arrays.opt.flags.contact
-        && arrays.opt.flags.constraint
-        && (geoms.any(|(t, a)| meets(*t, *a))
-            || others.any(|other| meets(other.contype, other.conaffinity))
-            || itself && (flex.internal || flex.selfcollide != FlexSelfCollide::None))
+    Ok(())
 }
 
 /// Returns the poses of the bodies in the world as the document has them, each composed with that of its parent.

@@ -10,8 +10,11 @@ use crate::state::State;
 pub(super) fn touch(model: &Model, s: &State, site: usize) -> f64 {
     let body = model.site_bodyid[site];
     let mut sum = 0.0;
-    for c in s.contact.iter().filter(|c| c.efc_address.is_some()) {
-        let [b1, b2] = c.geom.map(|g| model.geom_bodyid[g]);
+    let of_geoms = s.contact.iter().map(|c| (c, c.geom.map(Some)));
+    let of_flexes = s.flex_contact.iter().map(|c| (&c.contact, c.geoms()));
+    for (c, geoms) in of_geoms.chain(of_flexes).filter(|(c, _)| c.efc_address.is_some()) {
+        // flexes have no sites
+        let [b1, b2] = geoms.map(|geom| geom.map_or(usize::MAX, |g| model.geom_bodyid[g]));
         if (b1 != body && b2 != body) || c.force[0] <= 0.0 {
             continue;
         }
