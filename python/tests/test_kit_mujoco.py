@@ -105,7 +105,7 @@ def test_the_stand_in_is_all_of_babybench_mujoco(make: Make) -> None:
     with pytest.raises(TypeError, match=r"the state of an environment is env\.data"):
         mujoco.MjData(env.model)
     with pytest.raises(AttributeError, match="pip install mujoco"):
-        mujoco.MjvFigure  # noqa: B018
+        mujoco.mjr_render  # noqa: B018
 
 
 @without

@@ -70,8 +70,9 @@ def both(request: pytest.FixtureRequest) -> Both:
 
 
 def test_the_list_of_names_is_that_of_mujoco() -> None:
-    # what Python's own modules leave in a namespace may differ between versions of Python
-    assert set(mujoco_all_names.names()) == {name for name in dir(theirs) if not name.startswith("_")}
+    # parts that are there once something has imported them
+    parts = {"rollout", "viewer"}
+    assert set(mujoco_all_names.names()) - parts == {name for name in dir(theirs) if not name.startswith("_")} - parts
 
 
 def test_energies_and_subtrees(both: Both) -> None:

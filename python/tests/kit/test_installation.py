@@ -125,7 +125,7 @@ def test_a_checkout_with_mimo_and_babybench_of_its_own_reaches_the_package(kit_p
 
 
 def test_the_stand_in_for_mujoco_tells_what_it_does_not_have() -> None:
-    code = "import mujoco; print(mujoco.stands_in, mujoco.MjSpec)\ntry: mujoco.MjvFigure\nexcept AttributeError as e: print(e)"
+    code = "import mujoco; print(mujoco.stands_in, mujoco.MjSpec)\ntry: mujoco.mjr_render\nexcept AttributeError as e: print(e)"
     done = run(sys.executable, "-c", code, cwd=Path.cwd(), BABYBENCH_MUJOCO="off")
     if "pip install mujoco" not in done.stdout:
         pytest.fail(done.stdout + done.stderr)
