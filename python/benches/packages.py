@@ -36,7 +36,7 @@ SAME = 1e-9
 
 
 class Env:
-    """An environment of a package, with what all of them have."""
+    """The interface that this script gives to the environments of all packages."""
 
     def __init__(self, reset: Callable[[], Any], step: Callable[[Any], Any], owner: Any, low: Any, high: Any) -> None:
         """Takes what resets and steps it; ``owner`` is looked through for its model and state."""

@@ -1,4 +1,4 @@
-//! Tests of milestones: with the strength and springs of infants, MIMo can do what infants of his age can.
+//! Motor milestones: with `strength: infant` and `springs: weight`, MIMo reaches those of infants of his age.
 
 use babybench::config::{
     ActuationModel, Behavior, Compat, ConfigReader, Proportions, Scene, SpringModel, StrengthModel,

@@ -17,7 +17,7 @@ __all__ += [f"{verb}_{name}" for verb in ("get", "set") for name in _CALLBACKS]
 
 def _getter(name: str) -> Callable[[], None]:
     def get() -> None:
-        """Returns nothing: there is no such callback here."""
+        """Returns None: callbacks are not supported."""
 
     get.__name__ = get.__qualname__ = f"get_{name}"
     return get
@@ -25,7 +25,7 @@ def _getter(name: str) -> Callable[[], None]:
 
 def _setter(name: str) -> Callable[[Any], None]:
     def set(callback: Any) -> None:
-        """Refuses everything but nothing."""
+        """Raises an error unless the callback is None."""
         if callback is not None:
             raise NotImplementedError(
                 f"set_{name}: the engine calls no functions of programs; compute forces between steps, write "

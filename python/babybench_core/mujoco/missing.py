@@ -13,7 +13,7 @@ _FILES = "compiled models are not written: keep the document, or pickle the mode
 _PRINTED = "nothing prints whole models and states: print the arrays that you need"
 _ARITHMETIC = "use NumPy"
 _DEFAULTS = "make a model from a document: its options are then the default ones"
-_PYTHON = "it is no part of the interface of MuJoCo: import it from where it belongs"
+_PYTHON = "it is not part of MuJoCo's interface: import it from its own module"
 
 _WHY: dict[str, str] = {
     _WINDOW: """mjv_applyPerturbForce mjv_applyPerturbPose mjv_initPerturb mjv_movePerturb mjv_moveCamera mjv_moveModel

@@ -92,6 +92,28 @@ def draw(
     return native.draw(data._own, (fixed, free), size, what, markers)
 
 
+def finished(picture: NDArray[Any], what: str, out: NDArray[Any] | None, ngeom: int) -> NDArray[Any]:
+    """Returns a picture as ``Renderer.render`` does: segmentation with the kinds of elements, in ``out`` if that is given.
+
+    Ids from ``ngeom`` on are markers.
+
+    Raises:
+        ValueError: ``out`` has another shape.
+    """
+    if what == "segmentation":
+        # markers are elements of no kind
+        added = picture >= ngeom
+        kinds = np.where(picture >= 0, np.int32(mjtObj.mjOBJ_GEOM), np.int32(-1))
+        picture, kinds = np.where(added, np.int32(0), picture), np.where(added, np.int32(0), kinds)
+        picture = np.stack([picture, kinds], axis=2)
+    if out is None:
+        return picture
+    if np.shape(out) != picture.shape:
+        raise ValueError(f"Expected `out.shape == {picture.shape}`. Got `out.shape={np.shape(out)}` instead.")
+    out[...] = picture
+    return out
+
+
 class Renderer:
     """Draws states of a model, as MuJoCo's ``Renderer`` does, without shadows and reflections."""
 
@@ -211,18 +233,7 @@ class Renderer:
         if self._what == "depth":
             far = self._model.vis.map.zfar * self._model.stat.extent
             picture = np.minimum(picture, np.float32(far))
-        elif self._what == "segmentation":
-            # markers are elements of no kind
-            added = picture >= self._model.ngeom
-            kinds = np.where(picture >= 0, np.int32(mjtObj.mjOBJ_GEOM), np.int32(-1))
-            picture, kinds = np.where(added, np.int32(0), picture), np.where(added, np.int32(0), kinds)
-            picture = np.stack([picture, kinds], axis=2)
-        if out is None:
-            return picture
-        if np.shape(out) != picture.shape:
-            raise ValueError(f"Expected `out.shape == {picture.shape}`. Got `out.shape={np.shape(out)}` instead.")
-        out[...] = picture
-        return out
+        return finished(picture, self._what, out, self._model.ngeom)
 
     def close(self) -> None:
         """Gives the memory back; no picture can be drawn any more."""

@@ -46,7 +46,7 @@ class Given:
 
 
 def check_state(data: Any, model: Any = None) -> None:
-    """Refuses what is no state of ``babybench.mujoco``, and a state of another model.
+    """Raises an error unless this is a ``babybench.mujoco`` state of the given model.
 
     Raises:
         TypeError, ValueError: It is one of these.

@@ -7,8 +7,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from babybench_core.mujoco.enums import mjtCamera, mjtObj
-from babybench_core.mujoco.renderer import MjvCamera
+from babybench_core.mujoco.enums import mjtCamera
+from babybench_core.mujoco.renderer import MjvCamera, finished
 
 
 class ViewRenderer:
@@ -92,14 +92,7 @@ class ViewRenderer:
         engine = sync.core.engine
         draw = {"rgb": engine.render, "depth": engine.depth, "segmentation": engine.segmentation}[self._what]
         picture: NDArray[Any] = draw(self._camera, self.width, self.height)
-        if self._what == "segmentation":
-            picture = np.stack([picture, np.where(picture >= 0, np.int32(mjtObj.mjOBJ_GEOM), np.int32(-1))], axis=2)
-        if out is None:
-            return picture
-        if np.shape(out) != picture.shape:
-            raise ValueError(f"Expected `out.shape == {picture.shape}`. Got `out.shape={np.shape(out)}` instead.")
-        out[...] = picture
-        return out
+        return finished(picture, self._what, out, self.model.ngeom)
 
     def close(self) -> None:
         """Gives the picture's state back; :meth:`update_scene` takes another."""

@@ -184,7 +184,7 @@ class DataView(_Named):
     """The present state under the names of ``MjData``."""
 
     def __init__(self, env: _native.Env, model: ModelView, shapes: dict[str, tuple[int, ...]]) -> None:
-        """Makes room for the arrays in one piece of memory, which tells whether somebody holds one of them."""
+        """Allocates all arrays as one block, whose reference count shows whether a program holds any of them."""
         own = self.__dict__
         sizes = {name: int(np.prod(shape)) for name, shape in shapes.items()}
         memory = np.zeros(sum(sizes.values()))

@@ -104,7 +104,7 @@ impl CoupledSimulation {
     /// worlds whose y points up it turns z into y. Files that the document names are looked up in `assets`. Its keyframes are left out.
     ///
     /// # Errors
-    /// A document that does not compile; options or a frame out of range; a time step of the world that is no multiple of the model's.
+    /// A document that does not compile; options or a frame out of range; a world whose time step is not a multiple of the model's.
     pub fn join(
         document: &Document,
         assets: &dyn AssetSource,

@@ -212,7 +212,7 @@ impl Coupling {
     /// Returns how many steps of the model a step of the world takes.
     ///
     /// # Errors
-    /// A time step of the world that is no multiple of the model's.
+    /// The time step of the world is not a multiple of the model's.
     pub fn steps(model: &Model, dt: f64) -> Result<u32, CouplingError> {
         if !(dt.is_finite() && dt > 0.0) {
             return Err(CouplingError::TimeStep { dt });
