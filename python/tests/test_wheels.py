@@ -25,7 +25,8 @@ for name in ("mujoco", "mimoEnv"):
     except ModuleNotFoundError as error:
         print(f"no {name}" if error.name == name else error.name)
     else:
-        print("babybench-kit's" if "babybench_kit" in module.__file__ else "MuJoCo's")
+        ours = getattr(module, "stands_in", "babybench_kit" in module.__file__)
+        print("babybench-kit's" if ours else "MuJoCo's")
 """
 NEITHER, KIT, BOTH, MUJOCO_ALONE = (
     ["no mujoco", "no mimoEnv"],

@@ -4,18 +4,37 @@ from __future__ import annotations
 
 import importlib
 import sys
+from importlib.util import module_from_spec, spec_from_file_location
+from pathlib import Path
 from types import ModuleType
 
 __all__ = ["install", "uninstall"]
 
 _NAME = "mujoco"
+_OWN = "babybench.mujoco"
 _RENDERING = "gymnasium.envs.mujoco.mujoco_rendering"
 _ENVIRONMENTS = "gymnasium.envs.mujoco.mujoco_env"
 
 
+def _beside_this_package() -> None:
+    """Imports :mod:`babybench.mujoco` where ``babybench`` is another package, as it is in scripts in the starter kit's folder."""
+    folder = Path(__file__).parents[2].joinpath(*_OWN.split("."))
+    spec = spec_from_file_location(_OWN, folder / "__init__.py", submodule_search_locations=[str(folder)])
+    assert spec is not None
+    assert spec.loader is not None
+    module = sys.modules[_OWN] = module_from_spec(spec)
+    spec.loader.exec_module(module)
+
+
 def _own() -> dict[str, ModuleType]:
-    names = {_NAME: "babybench.mujoco", _RENDERING: "babybench_core.mujoco.gymnasium_rendering"}
-    names.update({f"{_NAME}.{part}": f"babybench.mujoco.{part}" for part in ("rollout", "viewer")})
+    try:
+        importlib.import_module(_OWN)
+    except ModuleNotFoundError as error:
+        if error.name != _OWN:
+            raise
+        _beside_this_package()
+    names = {_NAME: _OWN, _RENDERING: "babybench_core.mujoco.gymnasium_rendering"}
+    names.update({f"{_NAME}.{part}": f"{_OWN}.{part}" for part in ("rollout", "viewer")})
     return {name: importlib.import_module(own) for name, own in names.items()}
 
 
