@@ -1,8 +1,8 @@
 //! Defaults of tasks, and their exclusions.
 
 use super::error::Conflict;
-use super::keys::Key;
 use super::table::KEYS;
+use super::table::Key;
 use super::{ActuationModel, Behavior, BodyParts, Compat, Config, Learner, Scene, TouchFunction, TouchResponse};
 use crate::text::quoted;
 

@@ -4,13 +4,12 @@ use super::choices::{
     ActuationModel, Behavior, Compat, DelayUnit, EngineKind, FacialExpression, Learner, Limb, Proportions, ReflexVor,
     RendererKind, SpringModel, StartingPosition, StrengthModel, TouchFunction, TouchResponse, VisionOutput,
 };
-use super::kinds::{KeyKind, KeyValue};
+use super::kinds::KeyValue;
 use super::outputs::VisionOutputs;
 use super::reflexes::ReflexSet;
 use super::scene::Scene;
-use super::table::{Config, KEYS};
 
-/// A field of [`Config`] that converts to and from a [`KeyValue`].
+/// A field of [`Config`](super::Config) that converts to and from a [`KeyValue`].
 pub(super) trait ConfigField: Sized {
     fn to_value(&self) -> KeyValue;
     fn from_value(value: &KeyValue) -> Option<Self>;
@@ -103,43 +102,6 @@ impl<T: ConfigField> ConfigField for Option<T> {
             KeyValue::None => Some(None),
             value => T::from_value(value).map(Some),
         }
-    }
-}
-
-/// One key of the configuration.
-#[derive(Debug)]
-pub struct Key {
-    /// Name in a file.
-    pub name: &'static str,
-    /// Heading of the section that it belongs to.
-    pub section: &'static str,
-    /// Values that it accepts.
-    pub kind: KeyKind,
-    /// Meaning, in one sentence.
-    pub doc: &'static str,
-    pub(super) get: fn(&Config) -> KeyValue,
-    pub(super) set: fn(&mut Config, &KeyValue) -> bool,
-}
-
-impl Key {
-    /// Returns the key with this name, if it exists.
-    pub fn named(name: &str) -> Option<&'static Self> {
-        KEYS.iter().find(|key| key.name == name)
-    }
-
-    /// Returns the value of this key in `config`.
-    pub fn value(&self, config: &Config) -> KeyValue {
-        (self.get)(config)
-    }
-
-    /// Returns the value of this key when a file leaves it out.
-    pub fn default_value(&self) -> KeyValue {
-        self.value(&Config::default())
-    }
-
-    /// Sets the field; `false` if the value is of another type.
-    pub(crate) fn assign(&self, config: &mut Config, value: &KeyValue) -> bool {
-        (self.set)(config, value)
     }
 }
 

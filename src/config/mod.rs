@@ -48,7 +48,6 @@ pub use choices::{
 };
 pub use error::{ConfigError, Location};
 pub use examples::Example;
-pub use keys::Key;
 pub use kinds::{KeyKind, KeyValue};
 pub use outputs::VisionOutputs;
 pub use parts::{BodyParts, Part};
@@ -56,6 +55,7 @@ pub use reader::ConfigReader;
 pub use reflexes::ReflexSet;
 pub use scene::Scene;
 pub use table::Config;
+pub use table::Key;
 pub use table::{
     CatchOptions, Delays, EyeOptions, MAX_AGE, Measurements, MobileOptions, NoiseLevels, PainOptions, PlayOptions,
     ReflexDelays, ReflexGains, ReflexOptions, RollOverOptions, StrengthFactors,

@@ -7,9 +7,9 @@ use serde::ser::SerializeMap as _;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 use super::error::{self, Location};
-use super::keys::Key;
 use super::kinds::{KeyKind, KeyValue, ValueFault};
 use super::table::KEYS;
+use super::table::Key;
 use super::{Config, ConfigError, yaml};
 
 /// Name in errors of a configuration that is not a file.

@@ -5,8 +5,8 @@ use super::choices::{
     ActuationModel, Behavior, Compat, DelayUnit, EngineKind, FacialExpression, Learner, Limb, Proportions, ReflexVor,
     RendererKind, SpringModel, StartingPosition, StrengthModel, TouchFunction, TouchResponse, VisionOutput,
 };
-use super::keys::{ConfigField, Key, config};
-use super::kinds::KeyKind;
+use super::keys::{ConfigField, config};
+use super::kinds::{KeyKind, KeyValue};
 use super::outputs::VisionOutputs;
 use super::parts::BodyParts;
 use super::reflexes::ReflexSet;
@@ -66,6 +66,43 @@ const REFLEXES: KeyKind = KeyKind::NoneOrList(ReflexSet::NAMES);
 const MILLIMETRES: KeyKind = KeyKind::NoneOr { min: 0.1, max: 100.0 };
 
 use KeyKind::{Bool, Choice, Document, List, Text};
+
+/// One key of the configuration.
+#[derive(Debug)]
+pub struct Key {
+    /// Name in a file.
+    pub name: &'static str,
+    /// Heading of the section that it belongs to.
+    pub section: &'static str,
+    /// Values that it accepts.
+    pub kind: KeyKind,
+    /// Meaning, in one sentence.
+    pub doc: &'static str,
+    get: fn(&Config) -> KeyValue,
+    set: fn(&mut Config, &KeyValue) -> bool,
+}
+
+impl Key {
+    /// Returns the key with this name, if it exists.
+    pub fn named(name: &str) -> Option<&'static Self> {
+        KEYS.iter().find(|key| key.name == name)
+    }
+
+    /// Returns the value of this key in `config`.
+    pub fn value(&self, config: &Config) -> KeyValue {
+        (self.get)(config)
+    }
+
+    /// Returns the value of this key when a file leaves it out.
+    pub fn default_value(&self) -> KeyValue {
+        self.value(&Config::default())
+    }
+
+    /// Sets the field; `false` if the value is of another type.
+    pub(crate) fn assign(&self, config: &mut Config, value: &KeyValue) -> bool {
+        (self.set)(config, value)
+    }
+}
 
 /// The section of the keys that change MIMo's body.
 pub(super) const GROWTH: &str = "Growth";

@@ -4,9 +4,9 @@
 //! reading at once, so neither nesting nor aliases can grow.
 
 use super::error::{self, Location};
-use super::keys::Key;
 use super::kinds::{KeyKind, KeyValue, ValueFault};
 use super::table::KEYS;
+use super::table::Key;
 use super::{Config, ConfigError};
 use granit_parser::{Event, Marker, Options, Parser, ScalarStyle, ScanError};
 

@@ -10,10 +10,10 @@ use super::attribute::{Attr, Groups, TEXT};
 use super::composite::{self, Composite, CompositeJoint, CompositeSkin};
 use super::custom::{Key, Numeric, Text, Tuple, TupleElement};
 use super::document::{
-    Attach, Body, BodyFrame, Camera, Compiler, FreeJoint, Geom, Inertial, Joint, Light, ModelAsset, Replicate, Site,
-    Size,
+    Attach, Body, BodyFrame, Camera, Compiler, Geom, Inertial, Light, ModelAsset, Replicate, Site, Size,
 };
 use super::flex::{Elasticity, Flex, FlexComp, FlexCompEdge, FlexContact, FlexEdge, Pin};
+use super::joint::{FreeJoint, Joint};
 use super::mesh::{HField, Mesh};
 use super::relation::{
     Ends, Equality, Exclude, FlexEquality, JointEquality, Pair, Pulley, Tendon, TendonEquality, TendonGeom,

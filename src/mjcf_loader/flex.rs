@@ -2,7 +2,7 @@
 
 use super::attribute::Sign::{Any, NonNegative};
 use super::attribute::{FLAG, Keywords, Kind, TEXT, int, real, reals, some, words};
-use super::document::Joint;
+use super::joint::Joint;
 use super::table::table;
 use super::words::{Frame, GREY, MAX_BITS, MAX_GROUP, MIN_BITS, MIN_GROUP, SOLIMP, SOLREF};
 use crate::math::Vec3;

@@ -40,6 +40,7 @@ pub mod edit;
 mod elements;
 mod error;
 mod flex;
+mod joint;
 mod later;
 #[cfg(test)]
 mod limit_tests;

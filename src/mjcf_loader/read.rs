@@ -15,9 +15,10 @@ use std::collections::BTreeMap;
 
 use super::actuator::Actuator;
 use super::custom::{Key, Numeric, Text, Tuple};
-use super::document::{Camera, Compiler, Document, Geom, Joint, Light, ModelAsset, Site};
+use super::document::{Camera, Compiler, Document, Geom, Light, ModelAsset, Site};
 use super::elements;
 use super::error::{ErrorKind, LoadError, UNREAD};
+use super::joint::Joint;
 use super::mesh::{HField, Mesh};
 use super::relation::{Equality, Exclude, Pair, Tendon};
 use super::schema::{self, DEFAULT, Element};

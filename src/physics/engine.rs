@@ -3,10 +3,10 @@
 use std::sync::Arc;
 
 use crate::MAXVAL;
+use crate::detected::{Contact, ContactSide};
 use crate::error::EngineError;
-use crate::flex_contact::ContactSide;
 use crate::model::Model;
-use crate::state::{Contact, State};
+use crate::state::State;
 use crate::table::length;
 use crate::topology::Topology;
 

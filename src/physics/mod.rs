@@ -7,14 +7,15 @@
 #![deny(missing_docs)]
 
 mod batch;
+mod body_simple;
 pub mod collision;
 mod compile;
 pub mod constraint;
 pub mod contact;
+mod detected;
 pub mod dynamics;
 pub mod engine;
 mod error;
-mod flex_contact;
 mod free_body;
 mod length_range;
 pub mod params;
@@ -32,18 +33,18 @@ pub use batch::{Batch, BatchError, BatchPart};
 pub use compile::compile;
 pub use constraint::{ConstraintType, EfcRow};
 pub use contact::Quirks;
+pub use detected::{Contact, ContactSide, FlexContact};
 pub use dynamics::stages::{com_pos, kinematics};
 pub use dynamics::{cameras, stages::rne_post_constraint};
 pub use engine::{Engine, Probe, Stage};
 pub use error::EngineError;
-pub use flex_contact::{ContactSide, FlexContact};
 pub use free_body::FreeBody;
 pub use params::Params;
 pub use ray::{RayHit, ray};
 pub use shared::Shared;
 pub use soft::SoftModel;
 pub use soft::{SoftEngine, SoftOptions};
-pub use state::{Contact, State};
+pub use state::State;
 pub use table::Row;
 pub use topology::Topology;
 pub use vectorize::vectorize;

@@ -1,9 +1,9 @@
 //! Everything about a scene that changes while it runs.
 
 use crate::constraint::{Efc, EfcRow};
+use crate::detected::{Contact, FlexContact};
 use crate::error::EngineError;
-use crate::flex_contact::FlexContact;
-use crate::math::{MAT3_ID, Mat3, QUAT_ID, Quat, Vec3, add, cross, mat_t_vec, sub};
+use crate::math::{MAT3_ID, Mat3, QUAT_ID, Quat, Vec3, add, cross, sub};
 use crate::model::Arrays;
 use crate::params::Params;
 use crate::shared::Shared;
@@ -13,44 +13,6 @@ use crate::topology::Topology;
 
 /// Contacts for which memory is reserved, so that steps need not allocate. The cubes scene reaches about 100.
 pub const RESERVED_CONTACTS: usize = 192;
-
-/// A detected contact between two geoms.
-#[doc(alias = "mjContact")]
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Contact {
-    /// The geoms (2), by id: the one of lower [`crate::model::GeomType`] first, which the normal points away from.
-    pub geom: [usize; 2],
-    /// Distance between the surfaces, m; negative is penetration.
-    pub dist: f64,
-    /// Midpoint between the surfaces (3), world frame, m.
-    pub pos: Vec3,
-    /// Contact frame (9): its rows are the normal from the first to the second geom and two tangents, world frame, unit vectors.
-    pub frame: Mat3,
-    /// Dimension: 1 frictionless, 3 sliding, 4 with torsional, 6 with rolling friction.
-    pub dim: usize,
-    /// Friction coefficients (5): two sliding, no unit; one torsional, m; two rolling, m.
-    pub friction: [f64; 5],
-    /// `solref` of the normal (2); see [Solver parameters](Arrays#solver-parameters).
-    pub solref: [f64; 2],
-    /// `solref` of friction (2); zeros mean that of the normal.
-    pub solreffriction: [f64; 2],
-    /// `solimp` (5); see [Solver parameters](Arrays#solver-parameters).
-    pub solimp: [f64; 5],
-    /// Distance at which the contact becomes a constraint: margin minus gap, m.
-    pub includemargin: f64,
-    /// First constraint row of the contact, an index into [`State::efc_rows`]; `None` if it is not a constraint, where MuJoCo has -1.
-    pub efc_address: Option<usize>,
-    /// Force (3), N, and torque (3), N m, that the first geom exerts on the second, contact frame. Filled by the solver; MuJoCo computes it in
-    /// `mj_contactForce`.
-    pub force: [f64; 6],
-}
-
-impl Contact {
-    /// Returns the force that the first geom exerts on the second, N, world frame; the negative acts on the first.
-    pub fn world_force(&self) -> Vec3 {
-        mat_t_vec(&self.frame, [self.force[0], self.force[1], self.force[2]])
-    }
-}
 
 table! {
     |model: &Arrays, topology: &Topology|

@@ -1,6 +1,6 @@
 //! The structure of a model's tree, derived once for the dynamics: ancestor chains, trees, the layout of the inertia.
 
-use crate::dynamics::alone;
+use crate::body_simple::alone;
 use crate::model::Arrays;
 use crate::tiles::{Lanes, Pattern, Tile, ZERO};
 

@@ -4,8 +4,9 @@ use std::f64::consts::PI;
 
 use super::context::{Context, UserDataSize};
 use super::geometry::{EPS, normalize};
-use crate::document::{AutoBool, Body, Joint};
+use crate::document::{AutoBool, Body};
 use crate::error::LoadError;
+use crate::joint::Joint;
 use crate::math::{QUAT_ID, Vec3};
 use crate::model::{Arrays, JointType};
 

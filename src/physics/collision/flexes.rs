@@ -6,12 +6,12 @@ use super::placed;
 use crate::contact::{
     ContactOptions, ContactPoint, FlexPart, Scratch, element_element, frame, geom_element, vertex_element,
 };
+use crate::detected::{Contact, ContactSide, FlexContact};
 use crate::error::{EngineError, within};
-use crate::flex_contact::{ContactSide, FlexContact};
 use crate::limits::Limits;
 use crate::math::*;
 use crate::model::{Flex, FlexSelfCollide, GeomType, Model};
-use crate::state::{Contact, State};
+use crate::state::State;
 
 /// The most pairs of elements that sweep and prune finds in a flex, as in MuJoCo.
 const MOST_PAIRS: usize = 1_000_000;

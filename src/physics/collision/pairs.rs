@@ -4,9 +4,9 @@ mod rules;
 
 use super::trees::BodyTrees;
 use crate::contact::needs_convex;
+use crate::detected::Contact;
 use crate::math::{MINVAL, order};
 use crate::model::{Flex, GeomType, Model};
-use crate::state::Contact;
 pub use rules::ContactRules;
 
 /// Scenes of up to this many geoms have a table of all their pairs; the pairs of larger ones are made as geoms come near

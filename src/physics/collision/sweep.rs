@@ -3,11 +3,12 @@
 use super::pairs::PairOrder;
 use super::{GeomPair, PairTable, boxes, broad};
 use crate::contact::{ContactOptions, ContactPoint, PlacedGeom, Scratch, bounding_test, collide};
+use crate::detected::Contact;
 use crate::error::{EngineError, within};
 use crate::limits::Limits;
 use crate::math::Vec3;
 use crate::model::{GeomType, Model};
-use crate::state::{Contact, RESERVED_CONTACTS, State};
+use crate::state::{RESERVED_CONTACTS, State};
 
 /// Enlargement of boxes, m: more than rounding, so that the exact routines decide. The tolerance of the convex routines comes on top, as far as
 /// which they may find a contact where there is a gap.

@@ -1,7 +1,8 @@
 //! Forces of contacts from those of their rows.
 
+use crate::detected::Contact;
 use crate::model::{ConeType, Model};
-use crate::state::{Contact, State};
+use crate::state::State;
 
 /// Fills in the force of each contact (MuJoCo's `mj_contactForce`).
 #[doc(alias = "mj_contactForce")]

@@ -3,9 +3,10 @@
 use super::append::{RowAppender, RowParameters};
 use super::impedance::is_solref;
 use super::{ConstraintType, impedance};
+use crate::detected::Contact;
 use crate::math::{MINVAL, row};
 use crate::model::{ConeType, Model};
-use crate::state::{Contact, State};
+use crate::state::State;
 use crate::tiles::Lanes;
 
 /// Appends the rows of contact `i`.

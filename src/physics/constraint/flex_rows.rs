@@ -3,7 +3,7 @@
 use super::ConstraintType;
 use super::append::RowAppender;
 use super::contact_rows::{cone_lines, cone_parameters, pyramid_lines, pyramid_parameters};
-use crate::flex_contact::{ContactSide, FlexContact};
+use crate::detected::{ContactSide, FlexContact};
 use crate::math::{MINVAL, Vec3, norm, sub};
 use crate::model::{ConeType, Model};
 use crate::state::State;

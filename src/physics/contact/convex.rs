@@ -2,7 +2,7 @@
 //! cylinders and cylinders with boxes.
 
 use super::epa::{Overlap, epa};
-use super::flex::FlexPart;
+use super::flex_part::FlexPart;
 use super::gjk::{GjkLimits, Simplex, gjk};
 use super::mesh::MeshShape;
 use super::polytope::Polytope;
@@ -49,7 +49,7 @@ pub(super) fn against(
 ) -> Option<BareContact> {
     let mut find = ConvexPair {
         a: geom,
-        b: &stand_in(part.centre()),
+        b: &stand_in(part.centre),
         margin,
         options,
         polytope: &mut scratch.polytope,

@@ -3,7 +3,7 @@
 use super::ccd_support::CcdSupport;
 use super::epa::epa;
 use super::fix_normal::fixed;
-use super::flex::FlexPart;
+use super::flex_part::FlexPart;
 use super::gjk::{GjkLimits, Simplex, gjk};
 use super::mesh::MeshShape;
 use super::polytope::Polytope;
@@ -126,7 +126,7 @@ pub(super) fn hfield_flex(
         let frame = frame::from_normal(mat_vec(a.mat, normal));
         out.push(ContactPoint { dist, pos, frame });
     };
-    let (pos, whole) = (local.centre(), local.grown(0.5 * margin));
+    let (pos, whole) = (local.centre, local.grown(0.5 * margin));
     if options.nativeccd {
         let other = LocalGeom {
             pos,

@@ -50,6 +50,7 @@ mod epa;
 mod faces;
 mod fix_normal;
 mod flex;
+mod flex_part;
 pub mod frame;
 mod gjk;
 mod hfield;
@@ -67,7 +68,8 @@ mod tolerance;
 mod triangle;
 
 pub use distance::distance;
-pub use flex::{FlexPart, element_element, geom_element, vertex_element};
+pub use flex::{element_element, geom_element, vertex_element};
+pub use flex_part::FlexPart;
 
 use crate::MAXVAL;
 use crate::math::{Mat3, Vec3, add_scaled, column, dot, sub};

@@ -1,10 +1,10 @@
 //! Derivatives of the smooth forces by the velocities, for the implicit integrators.
 
-use super::constants::is_simple;
 use super::ellipsoid::{swim_slopes, swims};
 use super::fluid::medium_slopes;
 use super::tree_matrix::TreeMatrix;
 use super::{muscle, transmission};
+use crate::body_simple::is_simple;
 use crate::math::*;
 use crate::model::{BiasType, GainType, IntegratorType, Model};
 use crate::spatial::*;

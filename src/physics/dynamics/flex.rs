@@ -1,7 +1,6 @@
 //! Flexes: positions of their vertices, lengths of their edges with derivatives and rates, and the forces of their springs and their
 //! elasticity.
 
-use super::constants::slides_alone;
 use crate::math::*;
 use crate::model::{Arrays, Flex};
 use crate::spatial::velocity_at;
@@ -151,12 +150,4 @@ fn push(model: &Arrays, topology: &Topology, s: &mut State, body: usize, (force,
     for &d in topology.body_chain(body) {
         s.qfrc_passive[d as usize] += dot(velocity_at(&s.cdof[d as usize], arm), force);
     }
-}
-
-/// Tells of each body whether it stands alone with slides as its joints, in models with flexes.
-pub(crate) fn alone(model: &Arrays) -> Vec<bool> {
-    if model.flexes.is_empty() {
-        return Vec::new();
-    }
-    (0..model.nbody()).map(|b| slides_alone(model, b)).collect()
 }

@@ -29,7 +29,6 @@ mod wrap;
 pub use actuation::fwd_actuation;
 pub use articulated::{Articulated, Damping, Four};
 pub use constants::{MAX_WEIGHT, constants};
-pub(crate) use flex::alone;
 pub use flex::flexes;
 pub use inertia::mul_m;
 pub use inertia::{CompositeInertia, crb};

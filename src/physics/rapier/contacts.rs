@@ -13,7 +13,7 @@ use mjcf_sim_model::math::*;
 use mjcf_sim_model::model::{ConeType, Model};
 use mjcf_sim_physics::constraint::ConstraintType;
 use mjcf_sim_physics::contact::frame::from_normal;
-use mjcf_sim_physics::state::{Contact, State};
+use mjcf_sim_physics::{Contact, State};
 
 /// The aim of Rapier's solver for one contact.
 #[derive(Clone, Copy, Debug)]

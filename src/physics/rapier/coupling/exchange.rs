@@ -1,12 +1,13 @@
 //! What the world and a state tell each other in a step.
 
 use mjcf_sim_model::Model;
-use mjcf_sim_model::math::{Quat, Vec3, add, add_scaled, cross, mat_t_vec, scale, sub};
+use mjcf_sim_model::math::{Quat, Vec3, add, add_scaled, cross, mat_t_vec, sub};
 use mjcf_sim_physics::State;
 use rapier3d_f64::dynamics::RigidBody;
 use rapier3d_f64::parry::math::{Pose, Rotation, Vector};
 
 use super::WorldSets;
+use super::impulse::Impulse;
 use super::neighbors::{Neighbor, Source};
 use super::slots::{Slot, Slots};
 
@@ -20,13 +21,6 @@ pub(super) fn vector(v: Vec3) -> Vector {
 
 fn quat(q: Rotation) -> Quat {
     [q.w, q.x, q.y, q.z]
-}
-
-/// An impulse, N s, and its moment about the centre of mass of a slot's body, N m s, in the frame of the model.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(super) struct Impulse {
-    pub linear: Vec3,
-    pub angular: Vec3,
 }
 
 /// Puts the neighbors into a state: poses, velocities, and forces other than those of contacts. Unused slots rest.
@@ -111,15 +105,6 @@ pub(super) fn record(s: &State, model: &Model, slots: &Slots, h: f64, out: &mut 
         let moment = add(mat_t_vec(&contact.frame, [x, y, z]), cross(arm, force));
         out[slot].linear = add_scaled(out[slot].linear, force, sign * h);
         out[slot].angular = add_scaled(out[slot].angular, moment, sign * h);
-    }
-}
-
-impl Impulse {
-    fn times(self, share: f64) -> Self {
-        Self {
-            linear: scale(self.linear, share),
-            angular: scale(self.angular, share),
-        }
     }
 }
 

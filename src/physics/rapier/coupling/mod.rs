@@ -52,6 +52,7 @@ mod coupled;
 mod edit;
 mod error;
 mod exchange;
+mod impulse;
 mod neighbors;
 mod options;
 mod proxies;
@@ -77,7 +78,8 @@ pub use options::{CouplingOptions, Material, MaterialMap};
 pub use snapshot::CouplingSnapshot;
 
 use edit::Original;
-use exchange::{Impulse, vector};
+use exchange::vector;
+use impulse::Impulse;
 use neighbors::{Neighbors, Source};
 use proxies::Proxies;
 use slots::Slots;

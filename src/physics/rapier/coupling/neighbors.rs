@@ -7,7 +7,7 @@ use rapier3d_f64::parry::mass_properties::MassProperties;
 use rapier3d_f64::parry::math::Pose;
 use rapier3d_f64::parry::shape::ShapeType;
 
-use super::exchange::Impulse;
+use super::impulse::Impulse;
 use super::shapes::{GeomRow, GeomText};
 use super::slots::Slots;
 use super::{CouplingError, CouplingOptions, Material, WorldSets};

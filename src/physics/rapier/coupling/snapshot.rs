@@ -7,7 +7,7 @@ use rapier3d_f64::parry::math::Vector;
 
 use mjcf_sim_model::Model;
 
-use super::exchange::Impulse;
+use super::impulse::Impulse;
 use super::neighbors::{Neighbor, Source, meet};
 use super::{Coupling, CouplingError, WorldSets};
 

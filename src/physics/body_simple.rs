@@ -1,0 +1,42 @@
+//! Bodies whose inertia MuJoCo takes for diagonal (`body_simple`).
+
+use crate::math::QUAT_ID;
+use crate::model::{Arrays, JointType, SameFrame};
+
+/// Tells whether MuJoCo gives a body its whole inverse mass, not the mean over directions: one that [stands alone](is_simple) and
+/// whose joints all slide (`body_simple` 2).
+pub fn slides_alone(model: &Arrays, b: usize) -> bool {
+    let joints = model.body_jntadr[b]..model.body_jntadr[b] + model.body_jntnum[b];
+    is_simple(model, b) && joints.into_iter().all(|j| model.jnt_type[j] == JointType::Slide)
+}
+
+/// Tells whether MuJoCo takes the inertia of a body for diagonal (`body_simple`): a body without children, in the world or in a static
+/// body of the world, whose joints are at its origin and along axes of its frame, which is that of its inertia, and none of which
+/// follows a rotation.
+pub fn is_simple(model: &Arrays, b: usize) -> bool {
+    // what is smaller counts as zero in MuJoCo's compiler
+    const EPS: f64 = 1e-14;
+    let joints = model.body_jntadr[b]..model.body_jntadr[b] + model.body_jntnum[b];
+    let along_axis = |j: usize| model.jnt_axis[j].iter().filter(|v| v.abs() > EPS).count() == 1;
+    let turns = |j: usize| matches!(model.jnt_type[j], JointType::Hinge | JointType::Ball);
+    let parent = model.body_parentid[b];
+    let on_the_ground = model.body_parentid[parent] == 0 && model.body_jntnum[parent] == 0;
+    // a child, if there is one, comes next
+    on_the_ground
+        && model.body_parentid.get(b + 1) != Some(&b)
+        && model.body_sameframe[b] == SameFrame::Body
+        && !joints.is_empty()
+        && !joints.clone().skip(1).any(|j| turns(j - 1))
+        && joints.into_iter().all(|j| {
+            let at_origin = SameFrame::of(model.jnt_pos[j], QUAT_ID, [0.0; 3], QUAT_ID) == SameFrame::Body;
+            along_axis(j) && at_origin
+        })
+}
+
+/// Tells of each body whether it stands alone with slides as its joints, in models with flexes.
+pub fn alone(model: &Arrays) -> Vec<bool> {
+    if model.flexes.is_empty() {
+        return Vec::new();
+    }
+    (0..model.nbody()).map(|b| slides_alone(model, b)).collect()
+}
