@@ -7,7 +7,7 @@ use crate::model::{BiasType, DynType, GainType};
 
 use super::attachment::KeyframeValues;
 use super::attribute::Sign::{Any, NonNegative};
-use super::attribute::{FLAG, Kind, RANGE, TEXT, int, real, reals, some};
+use super::attribute::{AttributeKind, FLAG, RANGE, TEXT, int, real, reals, some};
 use super::error::UNREAD;
 use super::schema::Element;
 use super::table::{Table, table};
@@ -38,7 +38,7 @@ table! {
         "forcelimited" forcelimited: AutoBool = AutoBool::Auto, TRI, "Whether `forcerange` is enforced.";
         "ctrlrange" ctrlrange: [f64; 2] = [0.0; 2], RANGE, "Range of the control.";
         "forcerange" forcerange: [f64; 2] = [0.0; 2], RANGE, "Range of the force.";
-        "user" user: Vec<f64> = Vec::new(), Kind::User, "Numbers for programs.";
+        "user" user: Vec<f64> = Vec::new(), AttributeKind::User, "Numbers for programs.";
         "group" group: i32 = 0, int(i32::MIN as i64, i32::MAX as i64), "Group, which `actuatorgroupdisable` may name.";
     }
 }

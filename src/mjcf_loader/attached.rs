@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use super::actuator::Actuator;
 use super::attachment::{CopyCount, ElementKind};
 use super::custom::Key;
-use super::document::{Body, Document};
+use super::document::{Body, TypedDocument};
 use super::mesh::Mesh;
 use super::relation::{Equality, EqualityElements, Exclude, Pair, Tendon, TendonElements, WeldEquality};
 use super::sensor::{FrameObject, Object, Sensor};
@@ -68,7 +68,7 @@ pub(super) struct NameTable {
 
 impl NameTable {
     /// Collects the names of bodies with their elements, tendons and actuators.
-    pub fn of(document: &Document) -> Self {
+    pub fn of(document: &TypedDocument) -> Self {
         let mut known = Self::default();
         known.add(document.bodies.iter().flat_map(hanging));
         known.add(
@@ -307,7 +307,7 @@ pub(super) struct Sizes {
 }
 
 impl Sizes {
-    pub fn of(document: &Document) -> Self {
+    pub fn of(document: &TypedDocument) -> Self {
         let joints = || document.bodies.iter().flat_map(|body| &body.joints);
         Self {
             nq: joints().map(|joint| joint.kind.nq()).sum(),
@@ -340,7 +340,7 @@ impl Sizes {
 }
 
 /// Returns how many numbers the keyframes of a document have.
-pub(super) fn said(document: &Document) -> usize {
+pub(super) fn said(document: &TypedDocument) -> usize {
     document.keys.len() * Sizes::of(document).numbers()
 }
 
@@ -361,7 +361,7 @@ pub(super) fn hanging(body: &Body) -> impl Iterator<Item = (ElementKind, &String
 
 impl CopyCount {
     /// Counts all of a model.
-    pub fn of(from: &Document) -> Self {
+    pub fn of(from: &TypedDocument) -> Self {
         let hung: usize = from
             .bodies
             .iter()

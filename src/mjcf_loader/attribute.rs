@@ -17,7 +17,7 @@ pub(super) enum Sign {
 
 /// The value of an attribute.
 #[derive(Clone, Copy)]
-pub(super) enum Kind {
+pub(super) enum AttributeKind {
     Text,
     Flag,
     Word(&'static [&'static str]),
@@ -58,28 +58,28 @@ pub(super) enum Kind {
     Groups,
 }
 
-pub(super) const TEXT: Kind = Kind::Text;
-pub(super) const FLAG: Kind = Kind::Flag;
-pub(super) const INTS: Kind = Kind::Ints;
-pub(super) const RANGE: Kind = Kind::Range;
-pub(super) const fn int(min: i64, max: i64) -> Kind {
-    Kind::Int { min, max }
+pub(super) const TEXT: AttributeKind = AttributeKind::Text;
+pub(super) const FLAG: AttributeKind = AttributeKind::Flag;
+pub(super) const INTS: AttributeKind = AttributeKind::Ints;
+pub(super) const RANGE: AttributeKind = AttributeKind::Range;
+pub(super) const fn int(min: i64, max: i64) -> AttributeKind {
+    AttributeKind::Int { min, max }
 }
-pub(super) const fn real(sign: Sign) -> Kind {
+pub(super) const fn real(sign: Sign) -> AttributeKind {
     reals(1, sign)
 }
 /// Returns the kind of an attribute of exactly `n` values.
-pub(super) const fn reals(n: usize, sign: Sign) -> Kind {
-    Kind::Reals { min: n, max: n, sign }
+pub(super) const fn reals(n: usize, sign: Sign) -> AttributeKind {
+    AttributeKind::Reals { min: n, max: n, sign }
 }
 /// Returns the kind of an attribute of between `min` and `max` values; the others keep their defaults.
-pub(super) const fn some(min: usize, max: usize, sign: Sign) -> Kind {
-    Kind::Reals { min, max, sign }
+pub(super) const fn some(min: usize, max: usize, sign: Sign) -> AttributeKind {
+    AttributeKind::Reals { min, max, sign }
 }
 
-impl Kind {
+impl AttributeKind {
     /// Returns the kind itself. The column of kinds in a table may also hold [`Keywords`], which have the same method.
-    pub const fn kind(self) -> Kind {
+    pub const fn kind(self) -> AttributeKind {
         self
     }
 
@@ -90,10 +90,21 @@ impl Kind {
     /// Tells whether values are lists of numbers. An empty list counts as not given.
     pub const fn is_numbers(self) -> bool {
         match self {
-            Kind::Reals { .. } | Kind::Range | Kind::Quat | Kind::User | Kind::State | Kind::Poses | Kind::Data => true,
-            Kind::Indices | Kind::Ints => true,
-            Kind::Text | Kind::LongText | Kind::Flag | Kind::Word(_) | Kind::Int { .. } | Kind::EulerSeq => false,
-            Kind::UserCount | Kind::Groups | Kind::Memory => false,
+            AttributeKind::Reals { .. }
+            | AttributeKind::Range
+            | AttributeKind::Quat
+            | AttributeKind::User
+            | AttributeKind::State
+            | AttributeKind::Poses
+            | AttributeKind::Data => true,
+            AttributeKind::Indices | AttributeKind::Ints => true,
+            AttributeKind::Text
+            | AttributeKind::LongText
+            | AttributeKind::Flag
+            | AttributeKind::Word(_)
+            | AttributeKind::Int { .. }
+            | AttributeKind::EulerSeq => false,
+            AttributeKind::UserCount | AttributeKind::Groups | AttributeKind::Memory => false,
         }
     }
 }
@@ -114,8 +125,8 @@ macro_rules! words {
 pub(super) use words;
 
 impl<T: Copy + PartialEq> Keywords<T> {
-    pub const fn kind(self) -> Kind {
-        Kind::Word(self.names)
+    pub const fn kind(self) -> AttributeKind {
+        AttributeKind::Word(self.names)
     }
 
     pub fn visit(self, field: &mut impl KeywordField<T>, visit: FieldVisitor) {
@@ -205,7 +216,7 @@ pub(super) type Groups = &'static [&'static [Attr]];
 #[derive(Clone, Copy)]
 pub(super) struct Attr {
     pub name: &'static str,
-    pub kind: Kind,
+    pub kind: AttributeKind,
     /// Meaning, for display.
     pub meaning: &'static str,
     /// Writes the default of the attribute with this name as a document would; empty when there is none. It belongs to the table: one
@@ -219,7 +230,12 @@ pub(super) struct Attr {
 }
 
 impl Attr {
-    pub const fn new(name: &'static str, kind: Kind, meaning: &'static str, default: fn(&str) -> String) -> Attr {
+    pub const fn new(
+        name: &'static str,
+        kind: AttributeKind,
+        meaning: &'static str,
+        default: fn(&str) -> String,
+    ) -> Attr {
         Attr {
             name,
             kind,
@@ -282,43 +298,53 @@ impl Attr {
     pub fn parse(&self, text: &str, limits: &Limits) -> Result<Value, ErrorKind> {
         let attribute = self.name;
         match self.kind {
-            Kind::Text if text.len() > limits.text_bytes => Err(ErrorKind::TooMuch {
+            AttributeKind::Text if text.len() > limits.text_bytes => Err(ErrorKind::TooMuch {
                 what: "bytes in a name or path",
                 limit: limits.text_bytes,
             }),
-            Kind::Text | Kind::LongText => Ok(Value::Text(text.to_owned())),
-            Kind::Memory if is_memory(text) => Ok(Value::Text(text.to_owned())),
-            Kind::Memory => Err(ErrorKind::BadNumber {
+            AttributeKind::Text | AttributeKind::LongText => Ok(Value::Text(text.to_owned())),
+            AttributeKind::Memory if is_memory(text) => Ok(Value::Text(text.to_owned())),
+            AttributeKind::Memory => Err(ErrorKind::BadNumber {
                 attribute,
                 text: excerpt(text),
             }),
-            Kind::Flag => Ok(Value::Flag(word(attribute, text, &["false", "true"])? == 1)),
-            Kind::Word(allowed) => Ok(Value::Word(word(attribute, text, allowed)?)),
-            Kind::Int { min, max } => whole(attribute, text, min, max).map(Value::Int),
-            Kind::UserCount => {
+            AttributeKind::Flag => Ok(Value::Flag(word(attribute, text, &["false", "true"])? == 1)),
+            AttributeKind::Word(allowed) => Ok(Value::Word(word(attribute, text, allowed)?)),
+            AttributeKind::Int { min, max } => whole(attribute, text, min, max).map(Value::Int),
+            AttributeKind::UserCount => {
                 whole(attribute, text, -1, i64::try_from(limits.user).unwrap_or(i64::MAX)).map(Value::Int)
             }
-            Kind::User => numbers(attribute, text, 0, limits.user, Sign::Any, limits.real).map(Value::Reals),
-            Kind::State => numbers(attribute, text, 0, limits.state(), Sign::Any, limits.real).map(Value::Reals),
-            Kind::Poses => numbers(attribute, text, 0, 4 * limits.bodies, Sign::Any, limits.real).map(Value::Reals),
-            Kind::Data => numbers(attribute, text, 0, limits.mesh_numbers, Sign::Any, limits.real).map(Value::Reals),
-            Kind::Indices => {
+            AttributeKind::User => numbers(attribute, text, 0, limits.user, Sign::Any, limits.real).map(Value::Reals),
+            AttributeKind::State => {
+                numbers(attribute, text, 0, limits.state(), Sign::Any, limits.real).map(Value::Reals)
+            }
+            AttributeKind::Poses => {
+                numbers(attribute, text, 0, 4 * limits.bodies, Sign::Any, limits.real).map(Value::Reals)
+            }
+            AttributeKind::Data => {
+                numbers(attribute, text, 0, limits.mesh_numbers, Sign::Any, limits.real).map(Value::Reals)
+            }
+            AttributeKind::Indices => {
                 each(attribute, text, 0, limits.mesh_numbers, |word| integer(attribute, word)).map(Value::Reals)
             }
-            Kind::Ints => each(attribute, text, 2, 2, |word| integer(attribute, word)).map(Value::Reals),
-            Kind::Groups => {
+            AttributeKind::Ints => each(attribute, text, 2, 2, |word| integer(attribute, word)).map(Value::Reals),
+            AttributeKind::Groups => {
                 let each = |word: &str| whole(attribute, word, 0, 30).map(|group| 1 << group);
                 let mut bits = text.split_ascii_whitespace().map(each);
                 bits.try_fold(0, |all, bit| bit.map(|bit: i64| all | bit))
                     .map(Value::Int)
             }
-            Kind::Reals { min, max, sign } => numbers(attribute, text, min, max, sign, limits.real).map(Value::Reals),
-            Kind::Range => each(attribute, text, 2, 2, |word| bound(attribute, word, limits.real)).map(Value::Reals),
-            Kind::Quat => match numbers(attribute, text, 4, 4, Sign::Any, limits.real)? {
+            AttributeKind::Reals { min, max, sign } => {
+                numbers(attribute, text, min, max, sign, limits.real).map(Value::Reals)
+            }
+            AttributeKind::Range => {
+                each(attribute, text, 2, 2, |word| bound(attribute, word, limits.real)).map(Value::Reals)
+            }
+            AttributeKind::Quat => match numbers(attribute, text, 4, 4, Sign::Any, limits.real)? {
                 zero if zero.iter().all(|&v| v == 0.0) => Err(ErrorKind::Invalid(ZERO_QUAT)),
                 quat => Ok(Value::Reals(quat)),
             },
-            Kind::EulerSeq => {
+            AttributeKind::EulerSeq => {
                 let letters: Option<[u8; 3]> = text.as_bytes().try_into().ok();
                 letters
                     .filter(|letters| letters.iter().all(|letter| b"xyzXYZ".contains(letter)))

@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 
 use super::attribute::Sign::{Any, Positive};
-use super::attribute::{Attr, FLAG, Keywords, Kind, TEXT, int, real, reals, some, words};
+use super::attribute::{Attr, AttributeKind, FLAG, Keywords, TEXT, int, real, reals, some, words};
 use super::compile::{frame_to_quat, normalize};
 use super::document::{Geom, Site};
 use super::joint::Joint;
@@ -31,23 +31,23 @@ table! {
     /// `<composite>` in a body: a cable.
     element Composite {
         "prefix" prefix: String = String::new(), TEXT, "What the names of its bodies, joints, geoms and sites begin with.";
-        "type" kind: CompositeType = CompositeType::Gone, TYPES, required, "Kind: only `cable` is made, as in MuJoCo 3.3.0.";
+        "type" kind: CompositeType = CompositeType::Gone, TYPES, required, "AttributeKind: only `cable` is made, as in MuJoCo 3.3.0.";
         "count" count: [f64; 3] = [1.0; 3], some(1, 3, Positive), "Number of points along the curve; the second and the third are 1.";
         "offset" offset: Vec3 = [0.0; 3], reals(3, Any), "Where the curve begins to be drawn from in the body, m.";
         "curve" curve: String = String::new(), TEXT, "What x, y and z are along the curve: `s` for the length, `cos(s)` and `sin(s)`, `0`.";
         "initial" initial: String = "ball".to_owned(), TEXT, "Joint of the first body: `free`, `none`, or else a ball joint.";
         "size" size: Vec3 = [1.0, 0.0, 0.0], some(1, 3, Any), "Length, m, radius, m, and number of half turns of the curve.";
-        "vertex" vertex: Vec<f64> = Vec::new(), Kind::Data, "Points, m, three numbers each, in place of count and curve.";
+        "vertex" vertex: Vec<f64> = Vec::new(), AttributeKind::Data, "Points, m, three numbers each, in place of count and curve.";
     }
 }
 
 table! {
     /// Attributes of `<joint>` of a composite beside those of joints.
     group CompositeJoint {
-        check "kind", Kind::Word(&["main"]), "Which joints are meant: all of the cable.";
-        check "type", Kind::Word(&["free", "ball", "slide", "hinge"]), "Ignored, as in MuJoCo: joints of a cable are balls.";
+        check "kind", AttributeKind::Word(&["main"]), "Which joints are meant: all of the cable.";
+        check "type", AttributeKind::Word(&["free", "ball", "slide", "hinge"]), "Ignored, as in MuJoCo: joints of a cable are balls.";
         check "axis", reals(3, Any), "Ignored, as in MuJoCo: joints of a cable are balls.";
-        check "limited", Kind::Word(&["false", "true", "auto"]), "Ignored, as in MuJoCo 3.3.0: a range limits the joints where `autolimits` is on.";
+        check "limited", AttributeKind::Word(&["false", "true", "auto"]), "Ignored, as in MuJoCo 3.3.0: a range limits the joints where `autolimits` is on.";
         check "solreffix", some(1, 2, Any), "Ignored, as in MuJoCo: cables have no equalities.";
         check "solimpfix", some(1, 5, Any), "Ignored, as in MuJoCo: cables have no equalities.";
     }

@@ -1,7 +1,7 @@
 //! Tables of custom data for programs, and of keyframes.
 
 use super::attribute::Sign::Any;
-use super::attribute::{Keywords, Kind, TEXT, int, real, some, words};
+use super::attribute::{AttributeKind, Keywords, TEXT, int, real, some, words};
 use super::schema::Element;
 use super::table::{Table, table};
 
@@ -21,7 +21,7 @@ table! {
     /// `<custom><text>`.
     element Text {
         "name" name: String = String::new(), TEXT, required, "Name.";
-        "data" data: String = String::new(), Kind::LongText, required, "Text.";
+        "data" data: String = String::new(), AttributeKind::LongText, required, "Text.";
     }
 }
 
@@ -71,7 +71,7 @@ const NAMED: Keywords<TupleObject> = words! {
 table! {
     /// An `<element>` of a tuple.
     element TupleElement {
-        "objtype" objtype: Option<TupleObject> = None, NAMED, required, "Kind of what is named.";
+        "objtype" objtype: Option<TupleObject> = None, NAMED, required, "AttributeKind of what is named.";
         "objname" objname: String = String::new(), TEXT, required, "Its name.";
         check "prm", real(Any), "A number for programs. Not kept.";
     }
@@ -101,11 +101,11 @@ table! {
     element Key {
         "name" name: String = String::new(), TEXT, own, "Name.";
         "time" time: f64 = 0.0, real(Any), "Time, s.";
-        "qpos" qpos: Vec<f64> = Vec::new(), Kind::State, "Positions (nq); else `qpos0`.";
-        "qvel" qvel: Vec<f64> = Vec::new(), Kind::State, "Velocities (nv); else 0.";
-        "act" act: Vec<f64> = Vec::new(), Kind::State, "Activations (na); else 0.";
-        "ctrl" ctrl: Vec<f64> = Vec::new(), Kind::State, "Controls (nu); else 0.";
-        "mpos" mpos: Vec<f64> = Vec::new(), Kind::Poses, "Positions of mocap bodies (3 nmocap), m; else those in the document.";
-        "mquat" mquat: Vec<f64> = Vec::new(), Kind::Poses, "Orientations of mocap bodies (4 nmocap); else those in the document.";
+        "qpos" qpos: Vec<f64> = Vec::new(), AttributeKind::State, "Positions (nq); else `qpos0`.";
+        "qvel" qvel: Vec<f64> = Vec::new(), AttributeKind::State, "Velocities (nv); else 0.";
+        "act" act: Vec<f64> = Vec::new(), AttributeKind::State, "Activations (na); else 0.";
+        "ctrl" ctrl: Vec<f64> = Vec::new(), AttributeKind::State, "Controls (nu); else 0.";
+        "mpos" mpos: Vec<f64> = Vec::new(), AttributeKind::Poses, "Positions of mocap bodies (3 nmocap), m; else those in the document.";
+        "mquat" mquat: Vec<f64> = Vec::new(), AttributeKind::Poses, "Orientations of mocap bodies (4 nmocap); else those in the document.";
     }
 }

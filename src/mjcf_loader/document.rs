@@ -9,7 +9,7 @@ use crate::model::{self, CamLight, GeomType, Options, Statistic};
 use super::actuator::Actuator;
 use super::attachment::{AttachedKeyframe, CopyCount, KeyframeValues, MissingReference};
 use super::attribute::Sign::{Any, NonNegative, Positive};
-use super::attribute::{FLAG, INTS, Kind, TEXT, int, real, reals, some};
+use super::attribute::{AttributeKind, FLAG, INTS, TEXT, int, real, reals, some};
 use super::custom::{Key, Numeric, Text, Tuple};
 use super::flex::{Flex, FlexComp};
 use super::joint::Joint;
@@ -57,7 +57,7 @@ table! {
         "mesh" mesh: Option<String> = None, TEXT, "Mesh; a primitive shape is fitted to it.";
         "hfield" hfield: Option<String> = None, TEXT, "Height field.";
         "fitscale" fitscale: f64 = 1.0, real(Positive), "Factor on the size of a shape that is fitted to a mesh.";
-        "user" user: Vec<f64> = Vec::new(), Kind::User, "Numbers for programs.";
+        "user" user: Vec<f64> = Vec::new(), AttributeKind::User, "Numbers for programs.";
         with frame: Frame;
     }
 }
@@ -73,7 +73,7 @@ table! {
         "fromto" fromto: Option<[f64; 6]> = None, reals(6, Any), "Both ends of an elongated shape, m, in place of pose and length.";
         "rgba" rgba: [f64; 4] = GREY, reals(4, Any), "Colour and opacity.";
         "material" material: Option<String> = None, TEXT, "Material.";
-        "user" user: Vec<f64> = Vec::new(), Kind::User, "Numbers for programs.";
+        "user" user: Vec<f64> = Vec::new(), AttributeKind::User, "Numbers for programs.";
         with frame: Frame;
     }
 }
@@ -93,7 +93,7 @@ table! {
         "focalpixel" focalpixel: [f64; 2] = [0.0; 2], reals(2, Any), "Focal lengths in pixels, in place of `focal`.";
         "principal" principal: [f64; 2] = [0.0; 2], reals(2, Any), "Where the axis of the lens meets the sensor, from its centre, m.";
         "principalpixel" principalpixel: [f64; 2] = [0.0; 2], reals(2, Any), "The same in pixels, in place of `principal`.";
-        "user" user: Vec<f64> = Vec::new(), Kind::User, "Numbers for programs.";
+        "user" user: Vec<f64> = Vec::new(), AttributeKind::User, "Numbers for programs.";
         check "ipd", real(Any), "Distance of a person's eyes for stereoscopic pictures, m. Ignored: pictures are not stereoscopic.";
         with frame: Frame;
     }
@@ -145,7 +145,7 @@ table! {
         also lights: Vec<Light> = Vec::new();
         also states: KeyframeValues = KeyframeValues::new();
         "name" name: String = String::new(), TEXT, own, "Name.";
-        "user" user: Vec<f64> = Vec::new(), Kind::User, "Numbers for programs.";
+        "user" user: Vec<f64> = Vec::new(), AttributeKind::User, "Numbers for programs.";
         "mocap" mocap: bool = false, FLAG, "Whether a program moves it, by `mocap_pos` and `mocap_quat` of the state.";
         "gravcomp" gravcomp: f64 = 0.0, real(Any), "Part of its weight that is compensated.";
         check "childclass", TEXT, "Default class of the elements in it that name none.";
@@ -203,7 +203,7 @@ table! {
 }
 
 /// The content of a document.
-pub(super) struct Document {
+pub(super) struct TypedDocument {
     pub model: String,
     /// Settings of the document and of the models that it names, as the tree lists them; none in a model.
     pub compilers: Vec<Compiler>,
@@ -233,7 +233,7 @@ pub(super) struct Document {
     /// How much was copied of other models, here and in those.
     pub copied: CopyCount,
     /// Other models, by name.
-    pub models: BTreeMap<String, Document>,
+    pub models: BTreeMap<String, TypedDocument>,
     pub pairs: Vec<Pair>,
     pub excludes: Vec<Exclude>,
     pub equalities: Vec<Equality>,
@@ -248,7 +248,7 @@ pub(super) struct Document {
     pub moved_keys: Vec<AttachedKeyframe>,
 }
 
-impl Document {
+impl TypedDocument {
     /// Returns an empty document with a name; `at` is its root.
     pub fn new(at: usize, model: String) -> Self {
         let world = Body {

@@ -5,7 +5,7 @@ use crate::limits::Limits;
 use crate::math::Vec3;
 use crate::model::{BiasType, GeomType};
 
-use super::document::{Body, Camera, Document};
+use super::document::{Body, Camera, TypedDocument};
 use super::error::LoadError;
 use super::spec::{Locations, Spec};
 use super::words::AutoBool;
@@ -30,7 +30,7 @@ use super::{compile, geom_volume, read};
 /// ```
 pub struct Draft {
     tree: Tree,
-    document: Document,
+    document: TypedDocument,
     /// Prefix of all names.
     prefix: String,
 }

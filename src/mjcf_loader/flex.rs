@@ -1,7 +1,7 @@
 //! The tables of flexes: deformable bodies, and the shapes that `<flexcomp>` makes of them.
 
 use super::attribute::Sign::{Any, NonNegative};
-use super::attribute::{FLAG, Keywords, Kind, TEXT, int, real, reals, some, words};
+use super::attribute::{AttributeKind, FLAG, Keywords, TEXT, int, real, reals, some, words};
 use super::joint::Joint;
 use super::table::table;
 use super::words::{Frame, GREY, MAX_BITS, MAX_GROUP, MIN_BITS, MIN_GROUP, SOLIMP, SOLREF};
@@ -62,7 +62,7 @@ table! {
         "material" material: Option<String> = None, TEXT, "Material.";
         "rgba" rgba: [f64; 4] = GREY, reals(4, Any), "Colour and opacity.";
         "flatskin" flatskin: bool = false, FLAG, "Whether the faces of the surface are shaded flat.";
-        "texcoord" texcoord: Vec<f64> = Vec::new(), Kind::Data, "Texture coordinates of the vertices, two numbers each.";
+        "texcoord" texcoord: Vec<f64> = Vec::new(), AttributeKind::Data, "Texture coordinates of the vertices, two numbers each.";
     }
 }
 
@@ -74,10 +74,10 @@ table! {
         also elasticity: Elasticity = Elasticity::default();
         also bodies: Vec<String> = Vec::new();
         "name" name: String = String::new(), TEXT, "Name.";
-        "body" body: String = String::new(), Kind::LongText, required, "Names of the bodies of the vertices: one for each, or one for all.";
-        "vertex" vertex: Vec<f64> = Vec::new(), Kind::Data, "Positions of the vertices in their bodies, m, three numbers each; else the origins of the bodies.";
-        "element" element: Vec<f64> = Vec::new(), Kind::Indices, required, "Vertices of each element, from 0, `dim` + 1 numbers each.";
-        check "node", Kind::LongText, "Bodies between which vertices are interpolated, which is not done here: an error where it is given.";
+        "body" body: String = String::new(), AttributeKind::LongText, required, "Names of the bodies of the vertices: one for each, or one for all.";
+        "vertex" vertex: Vec<f64> = Vec::new(), AttributeKind::Data, "Positions of the vertices in their bodies, m, three numbers each; else the origins of the bodies.";
+        "element" element: Vec<f64> = Vec::new(), AttributeKind::Indices, required, "Vertices of each element, from 0, `dim` + 1 numbers each.";
+        check "node", AttributeKind::LongText, "Bodies between which vertices are interpolated, which is not done here: an error where it is given.";
         with look: FlexLook;
     }
 }
@@ -136,10 +136,10 @@ table! {
 table! {
     /// `<pin>` of a `<flexcomp>`: vertices that are fixed to the parent body.
     element Pin {
-        "id" id: Vec<f64> = Vec::new(), Kind::Indices, "Points.";
-        "range" range: Vec<f64> = Vec::new(), Kind::Indices, "First and last point of ranges.";
-        "grid" grid: Vec<f64> = Vec::new(), Kind::Indices, "Points of a grid by their coordinates, `dim` numbers each.";
-        "gridrange" gridrange: Vec<f64> = Vec::new(), Kind::Indices, "First and last coordinates of ranges in a grid, twice `dim` numbers each.";
+        "id" id: Vec<f64> = Vec::new(), AttributeKind::Indices, "Points.";
+        "range" range: Vec<f64> = Vec::new(), AttributeKind::Indices, "First and last point of ranges.";
+        "grid" grid: Vec<f64> = Vec::new(), AttributeKind::Indices, "Points of a grid by their coordinates, `dim` numbers each.";
+        "gridrange" gridrange: Vec<f64> = Vec::new(), AttributeKind::Indices, "First and last coordinates of ranges in a grid, twice `dim` numbers each.";
     }
 }
 
@@ -166,8 +166,8 @@ table! {
         "inertiabox" inertiabox: f64 = 0.005, real(Any), "Half length of a cube that has the moments of inertia of each vertex, m.";
         "rigid" rigid: bool = false, FLAG, "Whether all points are fixed to the parent body.";
         "file" file: Option<String> = None, TEXT, "Mesh of type `mesh`.";
-        "point" point: Vec<f64> = Vec::new(), Kind::Data, "Points of type `direct`, m, three numbers each.";
-        "element" element: Vec<f64> = Vec::new(), Kind::Indices, "Points of each element of type `direct`, from 0.";
+        "point" point: Vec<f64> = Vec::new(), AttributeKind::Data, "Points of type `direct`, m, three numbers each.";
+        "element" element: Vec<f64> = Vec::new(), AttributeKind::Indices, "Points of each element of type `direct`, from 0.";
         "origin" origin: Vec3 = [0.0; 3], reals(3, Any), "Point that makes tetrahedra of the triangles of a mesh, m.";
         with look: FlexLook;
         with frame: Frame;

@@ -2,7 +2,7 @@
 
 use super::attachment::KeyframeValues;
 use super::attribute::Sign::{Any, NonNegative};
-use super::attribute::{FLAG, Kind, RANGE, TEXT, int, real, reals, some};
+use super::attribute::{AttributeKind, FLAG, RANGE, TEXT, int, real, reals, some};
 use super::table::table;
 use super::words::{AutoBool, JOINTS, MAX_GROUP, MIN_GROUP, SOLIMP, SOLREF, TRI};
 use crate::math::Vec3;
@@ -15,7 +15,7 @@ table! {
         also align: AutoBool = AutoBool::Auto;
         also states: KeyframeValues = KeyframeValues::new();
         "name" name: String = String::new(), TEXT, own, "Name.";
-        "type" kind: JointType = JointType::Hinge, JOINTS, "Kind of motion.";
+        "type" kind: JointType = JointType::Hinge, JOINTS, "AttributeKind of motion.";
         "group" group: i32 = 0, int(MIN_GROUP, MAX_GROUP), "Visual group.";
         "pos" pos: Vec3 = [0.0; 3], reals(3, Any), "Anchor in the body, m.";
         "axis" axis: Vec3 = [0.0, 0.0, 1.0], reals(3, Any), "Axis in the body.";
@@ -36,7 +36,7 @@ table! {
         "solimplimit" solimp_limit: [f64; 5] = SOLIMP, some(1, 5, Any), "`solimp` of the limit.";
         "solreffriction" solref_friction: [f64; 2] = SOLREF, some(1, 2, Any), "`solref` of dry friction.";
         "solimpfriction" solimp_friction: [f64; 5] = SOLIMP, some(1, 5, Any), "`solimp` of dry friction.";
-        "user" user: Vec<f64> = Vec::new(), Kind::User, "Numbers for programs.";
+        "user" user: Vec<f64> = Vec::new(), AttributeKind::User, "Numbers for programs.";
     }
 }
 

@@ -1,6 +1,6 @@
 //! The MJCF that is understood, as a list for people.
 
-use super::attribute::{Attr, Kind, Sign};
+use super::attribute::{Attr, AttributeKind, Sign};
 use super::elements::MUJOCO;
 use super::schema::{DEFAULT, Rule};
 
@@ -78,7 +78,7 @@ fn info(attr: &Attr, classes: bool) -> AttributeInfo {
         values: values(attr.kind),
         default: match attr.kind {
             _ if attr.required => String::new(),
-            Kind::Groups => String::new(), // none by default, and what is stored are bits
+            AttributeKind::Groups => String::new(), // none by default, and what is stored are bits
             _ => (attr.default)(attr.name),
         },
         required: attr.required,
@@ -88,23 +88,23 @@ fn info(attr: &Attr, classes: bool) -> AttributeInfo {
 }
 
 /// Describes a kind of value in words.
-fn values(kind: Kind) -> String {
+fn values(kind: AttributeKind) -> String {
     match kind {
-        Kind::Text | Kind::LongText => "text".to_owned(),
-        Kind::Flag => "false, true".to_owned(),
-        Kind::Word(words) => words.join(", "),
-        Kind::Int { min, max: i64::MAX } => format!("whole number from {min}"),
-        Kind::Int { min, max } => format!("whole number, {min} to {max}"),
-        Kind::Range => "2 numbers or infinities".to_owned(),
-        Kind::Quat => "4 numbers, not all 0".to_owned(),
-        Kind::User | Kind::State | Kind::Poses | Kind::Data => "numbers".to_owned(),
-        Kind::Indices => "whole numbers".to_owned(),
-        Kind::Ints => "2 whole numbers".to_owned(),
-        Kind::Memory => "whole number, with a letter of KMGTPE behind, or -1".to_owned(),
-        Kind::Groups => "whole numbers, 0 to 30".to_owned(),
-        Kind::UserCount => "whole number from -1".to_owned(),
-        Kind::EulerSeq => "three letters of xyzXYZ".to_owned(),
-        Kind::Reals { min, max, sign } => {
+        AttributeKind::Text | AttributeKind::LongText => "text".to_owned(),
+        AttributeKind::Flag => "false, true".to_owned(),
+        AttributeKind::Word(words) => words.join(", "),
+        AttributeKind::Int { min, max: i64::MAX } => format!("whole number from {min}"),
+        AttributeKind::Int { min, max } => format!("whole number, {min} to {max}"),
+        AttributeKind::Range => "2 numbers or infinities".to_owned(),
+        AttributeKind::Quat => "4 numbers, not all 0".to_owned(),
+        AttributeKind::User | AttributeKind::State | AttributeKind::Poses | AttributeKind::Data => "numbers".to_owned(),
+        AttributeKind::Indices => "whole numbers".to_owned(),
+        AttributeKind::Ints => "2 whole numbers".to_owned(),
+        AttributeKind::Memory => "whole number, with a letter of KMGTPE behind, or -1".to_owned(),
+        AttributeKind::Groups => "whole numbers, 0 to 30".to_owned(),
+        AttributeKind::UserCount => "whole number from -1".to_owned(),
+        AttributeKind::EulerSeq => "three letters of xyzXYZ".to_owned(),
+        AttributeKind::Reals { min, max, sign } => {
             let count = match (min, max) {
                 (1, 1) => "1 number".to_owned(),
                 _ if min == max => format!("{max} numbers"),

@@ -3,7 +3,7 @@
 use crate::math::Vec3;
 
 use super::attribute::Sign::Any;
-use super::attribute::{FLAG, Keywords, Kind, TEXT, int, reals, words};
+use super::attribute::{AttributeKind, FLAG, Keywords, TEXT, int, reals, words};
 use super::table::table;
 use super::words::MAX_COUNT;
 
@@ -33,12 +33,12 @@ table! {
         "name" name: String = String::new(), TEXT, own, "Name; else that of the file.";
         "file" file: Option<String> = None, TEXT, own, "File: OBJ, STL (binary) or MSH, by its ending.";
         "content_type" content_type: Option<String> = None, TEXT, own, "Format of the file, whatever its ending: `model/obj`, `model/stl` or `model/vnd.mujoco.msh`.";
-        "vertex" vertex: Vec<f64> = Vec::new(), Kind::Data, own, "Vertices, m, three numbers each.";
-        "normal" normal: Vec<f64> = Vec::new(), Kind::Data, own, "Normals of the vertices, three numbers each; else they follow from the faces.";
-        "texcoord" texcoord: Vec<f64> = Vec::new(), Kind::Data, own, "Texture coordinates of the vertices, two numbers each, from the top of the image.";
-        "face" face: Vec<f64> = Vec::new(), Kind::Indices, own, "Vertices of each triangle, from 0, counterclockwise from outside; else the triangles of the convex hull.";
+        "vertex" vertex: Vec<f64> = Vec::new(), AttributeKind::Data, own, "Vertices, m, three numbers each.";
+        "normal" normal: Vec<f64> = Vec::new(), AttributeKind::Data, own, "Normals of the vertices, three numbers each; else they follow from the faces.";
+        "texcoord" texcoord: Vec<f64> = Vec::new(), AttributeKind::Data, own, "Texture coordinates of the vertices, two numbers each, from the top of the image.";
+        "face" face: Vec<f64> = Vec::new(), AttributeKind::Indices, own, "Vertices of each triangle, from 0, counterclockwise from outside; else the triangles of the convex hull.";
         "refpos" refpos: Vec3 = [0.0; 3], reals(3, Any), own, "Point that becomes the origin of the mesh, m.";
-        "refquat" refquat: [f64; 4] = [1.0, 0.0, 0.0, 0.0], Kind::Quat, own, "Orientation that becomes the axes of the mesh.";
+        "refquat" refquat: [f64; 4] = [1.0, 0.0, 0.0, 0.0], AttributeKind::Quat, own, "Orientation that becomes the axes of the mesh.";
         "scale" scale: Vec3 = [1.0; 3], reals(3, Any), "Factors on the coordinates, after `refpos` and `refquat`.";
         "smoothnormal" smoothnormal: bool = false, FLAG, own, "Whether normals are means over all faces of a vertex; else those that turn away from the mean by more than 37 degrees are left out.";
         "maxhullvert" maxhullvert: i32 = -1, int(4, MAX_COUNT), "Most corners of the convex hull; any number without it. Where the hull has more, it is of those that are found first.";
@@ -58,6 +58,6 @@ table! {
         "nrow" nrow: usize = 0, int(0, MAX_SIDE), "Number of rows, along y, where there is no file.";
         "ncol" ncol: usize = 0, int(0, MAX_SIDE), "Number of columns, along x, where there is no file.";
         "size" size: [f64; 4] = [0.0; 4], reals(4, Any), required, "Half lengths along x and y, greatest height over 0, depth of the base below 0, m.";
-        "elevation" elevation: Vec<f64> = Vec::new(), Kind::Data, "Heights, row by row from the greatest y; scaled so that they are from 0 to 1. Without any the field is flat.";
+        "elevation" elevation: Vec<f64> = Vec::new(), AttributeKind::Data, "Heights, row by row from the greatest y; scaled so that they are from 0 to 1. Without any the field is flat.";
     }
 }

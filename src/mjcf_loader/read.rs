@@ -15,7 +15,7 @@ use std::collections::BTreeMap;
 
 use super::actuator::Actuator;
 use super::custom::{Key, Numeric, Text, Tuple};
-use super::document::{Camera, Compiler, Document, Geom, Light, ModelAsset, Site};
+use super::document::{Camera, Compiler, Geom, Light, ModelAsset, Site, TypedDocument};
 use super::elements;
 use super::error::{ErrorKind, LoadError, UNREAD};
 use super::joint::Joint;
@@ -150,7 +150,7 @@ struct Sources<'t> {
 }
 
 /// Reads the whole document.
-pub(super) fn read(tree: &Tree) -> Result<Document, LoadError> {
+pub(super) fn read(tree: &Tree) -> Result<TypedDocument, LoadError> {
     let root = |model: &ModelFile| {
         let name = &tree.nodes[model.root].name;
         if name != "mujoco" {
@@ -176,9 +176,9 @@ pub(super) fn read(tree: &Tree) -> Result<Document, LoadError> {
 }
 
 /// Reads the document, or a model that it names. Recursion is bounded by the limit on models within models.
-fn read_model(parts: &Sources, index: usize) -> Result<Document, LoadError> {
+fn read_model(parts: &Sources, index: usize) -> Result<TypedDocument, LoadError> {
     let (tree, root) = (parts.tree, &parts.roots[index]);
-    let mut document = Document::new(root.at, Root::read(root).model);
+    let mut document = TypedDocument::new(root.at, Root::read(root).model);
     let mut classes = Classes {
         tree,
         by_name: BTreeMap::from([(MAIN.to_owned(), Class::default())]),
@@ -240,7 +240,7 @@ fn read_model(parts: &Sources, index: usize) -> Result<Document, LoadError> {
 }
 
 /// Adds a model that `<attach>` may take bodies of.
-fn add_model(parts: &Sources, index: usize, e: &Element, document: &mut Document) -> Result<(), LoadError> {
+fn add_model(parts: &Sources, index: usize, e: &Element, document: &mut TypedDocument) -> Result<(), LoadError> {
     let model = read_model(parts, index)?;
     let given = ModelAsset::read(e).name;
     let name = if given.is_empty() { model.model.clone() } else { given };
@@ -254,7 +254,7 @@ fn add_model(parts: &Sources, index: usize, e: &Element, document: &mut Document
 }
 
 /// Adds an element of a section that lists its elements one after another.
-fn add(e: &Element, section: &str, classes: &Classes, document: &mut Document) -> Result<(), LoadError> {
+fn add(e: &Element, section: &str, classes: &Classes, document: &mut TypedDocument) -> Result<(), LoadError> {
     let class = || classes.of(e, MAIN);
     let wrong = |what| classes.error(e, ErrorKind::Invalid(what));
     match (section, e.name) {

@@ -3,7 +3,7 @@
 use crate::math::Vec3;
 
 use super::attribute::Sign::{Any, NonNegative, Positive};
-use super::attribute::{AttributeField, FLAG, Kind, RANGE, TEXT, Value, int, real, reals, some};
+use super::attribute::{AttributeField, AttributeKind, FLAG, RANGE, TEXT, Value, int, real, reals, some};
 use super::error::UNREAD;
 use super::schema::Element;
 use super::table::{Table, table};
@@ -220,7 +220,7 @@ table! {
         "solimpfriction" solimp_friction: [f64; 5] = SOLIMP, some(1, 5, Any), "`solimp` of dry friction.";
         "stiffness" stiffness: f64 = 0.0, real(NonNegative), "Stiffness of the spring.";
         "damping" damping: f64 = 0.0, real(NonNegative), "Damping.";
-        "user" user: Vec<f64> = Vec::new(), Kind::User, "Numbers for programs.";
+        "user" user: Vec<f64> = Vec::new(), AttributeKind::User, "Numbers for programs.";
         "group" group: i32 = 0, int(MIN_GROUP, MAX_GROUP), "Visual group.";
     }
 }

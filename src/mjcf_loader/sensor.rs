@@ -3,7 +3,7 @@
 use crate::model::{DataType, ObjType, SensorType};
 
 use super::attribute::Sign::NonNegative;
-use super::attribute::{Groups, Keywords, Kind, TEXT, int, real, words};
+use super::attribute::{AttributeKind, Groups, Keywords, TEXT, int, real, words};
 use super::error::UNREAD;
 use super::schema::Element;
 use super::table::{Table, table};
@@ -34,7 +34,7 @@ table! {
         "name" name: String = String::new(), TEXT, own, "Name.";
         "cutoff" cutoff: f64 = 0.0, real(NonNegative), "Bound of the values; 0 for none.";
         "noise" noise: f64 = 0.0, real(NonNegative), "Standard deviation of noise, for programs: sensors are exact.";
-        "user" user: Vec<f64> = Vec::new(), Kind::User, "Numbers for programs.";
+        "user" user: Vec<f64> = Vec::new(), AttributeKind::User, "Numbers for programs.";
     }
 }
 
@@ -76,7 +76,7 @@ table! {
 table! {
     /// The object of a sensor of a frame, and its reference.
     group OfFrame {
-        "objtype" objtype: FrameObject = FrameObject::Body, FRAMES, required, "Kind of the object; `body` for the frame of its centre of mass, `xbody` for its own.";
+        "objtype" objtype: FrameObject = FrameObject::Body, FRAMES, required, "AttributeKind of the object; `body` for the frame of its centre of mass, `xbody` for its own.";
         "objname" objname: String = String::new(), TEXT, required, "Name of the object.";
     }
 }
@@ -84,7 +84,7 @@ table! {
 table! {
     /// In which frame a sensor of a frame measures.
     group InFrame {
-        "reftype" reftype: Option<FrameObject> = None, FRAMES, "Kind of the object in whose frame it measures; else in that of the world.";
+        "reftype" reftype: Option<FrameObject> = None, FRAMES, "AttributeKind of the object in whose frame it measures; else in that of the world.";
         "refname" refname: Option<String> = None, TEXT, "Name of that object.";
     }
 }
@@ -137,8 +137,8 @@ table! {
     group OfUser {
         "dim" dim: usize = 0, int(0, MAX_USER), required, "Number of its values.";
         "needstage" needstage: usize = 3, STAGES, "Stage of a step after which the program fills it, for the program.";
-        "datatype" datatype: DataType = DataType::Real, DATA, "Kind of its values, which says how a cutoff acts on them.";
-        "objtype" objtype: Option<ObjType> = None, OBJECTS, "Kind of an object that it is about, for the program.";
+        "datatype" datatype: DataType = DataType::Real, DATA, "AttributeKind of its values, which says how a cutoff acts on them.";
+        "objtype" objtype: Option<ObjType> = None, OBJECTS, "AttributeKind of an object that it is about, for the program.";
         "objname" objname: Option<String> = None, TEXT, "Name of that object.";
     }
 }

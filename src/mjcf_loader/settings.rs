@@ -4,7 +4,7 @@ use crate::math::Vec3;
 use crate::model::{self, ConeType, Flags, IntegratorType, JacobianFormat, Options, SolverType, Statistic};
 
 use super::attribute::Sign::{Any, NonNegative, Positive};
-use super::attribute::{FLAG, INTS, Keywords, Kind, TEXT, int, real, reals, some, words};
+use super::attribute::{AttributeKind, FLAG, INTS, Keywords, TEXT, int, real, reals, some, words};
 use super::error::UNREAD;
 use super::schema::Element;
 use super::table::{Table, table};
@@ -21,7 +21,7 @@ table! {
     /// `<compiler>`.
     group Compiler {
         "angle" degree: bool = true, words! { "radian" => false, "degree" => true }, "Unit of angles in the document.";
-        "eulerseq" eulerseq: [u8; 3] = *b"xyz", Kind::EulerSeq, "Axes of Euler angles; lower case turns with the body.";
+        "eulerseq" eulerseq: [u8; 3] = *b"xyz", AttributeKind::EulerSeq, "Axes of Euler angles; lower case turns with the body.";
         "inertiafromgeom" inertiafromgeom: AutoBool = AutoBool::Auto, TRI, "Whether inertia is inferred from geoms; `auto`: only where a body has no `inertial`.";
         "autolimits" autolimits: bool = true, FLAG, "Whether giving a range enables its limit.";
         "inertiagrouprange" inertiagrouprange: [f64; 2] = [0.0, 5.0], INTS, "Lowest and highest group of the geoms from which inertia is inferred.";
@@ -37,7 +37,7 @@ table! {
         "strippath" strippath: bool = false, FLAG, "Whether directories in the names of files are dropped.";
         "fusestatic" fusestatic: bool = false, FLAG, "Whether bodies without joints are fused with what carries them, where nothing in the document may name them: no contact, equality, tendon, actuator, sensor, tuple or skin, no camera and no light.";
         "discardvisual" discardvisual: bool = false, FLAG, "Whether what is only drawn is left out: textures, materials, geoms that collide by no mask and that nothing names (they still weigh), and meshes of none.";
-        check "coordinate", Kind::Word(&["local"]), "Frame of positions; only the parent's.";
+        check "coordinate", AttributeKind::Word(&["local"]), "Frame of positions; only the parent's.";
         check "usethread", FLAG, "How MuJoCo compiles meshes. Ignored.";
     }
 }
@@ -133,7 +133,7 @@ table! {
         "viscosity" viscosity: f64 = 0.0, real(NonNegative), "Viscosity of the medium around bodies, Pa s.";
         "wind" wind: Vec3 = [0.0; 3], reals(3, Any), "Velocity of the medium, m/s.";
         "magnetic" magnetic: Vec3 = [0.0, -0.5, 0.0], reals(3, Any), "Magnetic flux, which magnetometers read.";
-        "actuatorgroupdisable" disableactuator: u32 = 0, Kind::Groups, "Groups of actuators that exert no force, from 0 to 30.";
+        "actuatorgroupdisable" disableactuator: u32 = 0, AttributeKind::Groups, "Groups of actuators that exert no force, from 0 to 30.";
         check "apirate", real(NonNegative), "Rate at which programs are to be told. Ignored.";
         check "o_margin", real(Any), "Margin of all contacts where the flag `override` is on, which it cannot be. Ignored.";
         check "o_solref", some(1, 2, Any), "`solref` of all contacts, as `o_margin`. Ignored.";
@@ -169,26 +169,26 @@ table! {
         "energy" energy: bool = false, SWITCH, "Whether MuJoCo computes energies in every step. For programs: it changes no motion.";
         "fwdinv" fwdinv: bool = false, SWITCH, "Whether MuJoCo compares forward and inverse dynamics. For programs: it changes no motion.";
         "invdiscrete" invdiscrete: bool = false, SWITCH, "Whether MuJoCo's inverse dynamics are those of its integrator. For programs: it changes no motion.";
-        check "override", Kind::Word(&["disable"]), "Whether all contacts have the parameters of `<option>`; only off.";
+        check "override", AttributeKind::Word(&["disable"]), "Whether all contacts have the parameters of `<option>`; only off.";
     }
 }
 
 table! {
     /// `<size>`.
     group Size {
-        "nuser_body" nuser_body: Option<usize> = None, Kind::UserCount, "Length of `user` of bodies; -1 for the longest given.";
-        "nuser_jnt" nuser_jnt: Option<usize> = None, Kind::UserCount, "Length of `user` of joints; -1 for the longest given.";
-        "nuser_geom" nuser_geom: Option<usize> = None, Kind::UserCount, "Length of `user` of geoms; -1 for the longest given.";
-        "nuser_site" nuser_site: Option<usize> = None, Kind::UserCount, "Length of `user` of sites; -1 for the longest given.";
-        "nuser_cam" nuser_cam: Option<usize> = None, Kind::UserCount, "Length of `user` of cameras; -1 for the longest given.";
-        "nuser_tendon" nuser_tendon: Option<usize> = None, Kind::UserCount, "Length of `user` of tendons; -1 for the longest given.";
-        "nuser_actuator" nuser_actuator: Option<usize> = None, Kind::UserCount, "Length of `user` of actuators; -1 for the longest given.";
-        "nuser_sensor" nuser_sensor: Option<usize> = None, Kind::UserCount, "Length of `user` of sensors; -1 for the longest given.";
+        "nuser_body" nuser_body: Option<usize> = None, AttributeKind::UserCount, "Length of `user` of bodies; -1 for the longest given.";
+        "nuser_jnt" nuser_jnt: Option<usize> = None, AttributeKind::UserCount, "Length of `user` of joints; -1 for the longest given.";
+        "nuser_geom" nuser_geom: Option<usize> = None, AttributeKind::UserCount, "Length of `user` of geoms; -1 for the longest given.";
+        "nuser_site" nuser_site: Option<usize> = None, AttributeKind::UserCount, "Length of `user` of sites; -1 for the longest given.";
+        "nuser_cam" nuser_cam: Option<usize> = None, AttributeKind::UserCount, "Length of `user` of cameras; -1 for the longest given.";
+        "nuser_tendon" nuser_tendon: Option<usize> = None, AttributeKind::UserCount, "Length of `user` of tendons; -1 for the longest given.";
+        "nuser_actuator" nuser_actuator: Option<usize> = None, AttributeKind::UserCount, "Length of `user` of actuators; -1 for the longest given.";
+        "nuser_sensor" nuser_sensor: Option<usize> = None, AttributeKind::UserCount, "Length of `user` of sensors; -1 for the longest given.";
         "nuserdata" nuserdata: usize = 0, int(0, MAX_USERDATA), "Length of `userdata` of a simulation, which only programs use.";
         "nconmax" nconmax: Option<i64> = None, int(-1, i64::MAX), "Memory of MuJoCo; 0 for no contacts, else ignored.";
         "njmax" njmax: Option<i64> = None, int(-1, i64::MAX), "Memory of MuJoCo. Ignored.";
         "nstack" nstack: Option<i64> = None, int(-1, i64::MAX), "Memory of MuJoCo. Ignored.";
-        "memory" memory: Option<String> = None, Kind::Memory, "Memory of MuJoCo. Ignored.";
+        "memory" memory: Option<String> = None, AttributeKind::Memory, "Memory of MuJoCo. Ignored.";
         "nkey" nkey: i64 = 0, int(i32::MIN as i64, MAX_KEYS), "Least number of keyframes; those that are not given hold the reference configuration.";
     }
 }

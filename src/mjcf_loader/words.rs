@@ -4,7 +4,7 @@ use crate::math::Vec3;
 use crate::model::{BiasType, Builtin, CamLight, DynType, GainType, GeomType, JointType, Mark, TextureType};
 
 use super::attribute::Sign::Any;
-use super::attribute::{AttributeField, FieldVisitor, Keywords, Kind, Value, reals, words};
+use super::attribute::{AttributeField, AttributeKind, FieldVisitor, Keywords, Value, reals, words};
 use super::table::table;
 
 pub(super) const SOLREF: [f64; 2] = [0.02, 1.0];
@@ -113,12 +113,12 @@ impl Orientation {
 /// One way to write an orientation.
 #[derive(Clone, Copy)]
 struct Rotation<const N: usize> {
-    kind: Kind,
+    kind: AttributeKind,
     make: fn([f64; N]) -> Orientation,
 }
 
 const QUAT: Rotation<4> = Rotation {
-    kind: Kind::Quat,
+    kind: AttributeKind::Quat,
     make: Orientation::Quat,
 };
 const fn rotation<const N: usize>(make: fn([f64; N]) -> Orientation) -> Rotation<N> {
@@ -129,7 +129,7 @@ const fn rotation<const N: usize>(make: fn([f64; N]) -> Orientation) -> Rotation
 }
 
 impl<const N: usize> Rotation<N> {
-    const fn kind(self) -> Kind {
+    const fn kind(self) -> AttributeKind {
         self.kind
     }
 
@@ -159,7 +159,7 @@ impl<const N: usize> AttributeField for RotationField<'_, N> {
 
     fn show(&self) -> String {
         match (self.rotation.kind, &*self.field) {
-            (Kind::Quat, Orientation::Quat(quat)) => quat.show(),
+            (AttributeKind::Quat, Orientation::Quat(quat)) => quat.show(),
             _ => String::new(),
         }
     }

@@ -68,6 +68,7 @@ STANDING_IN = {
     "DataView": "MjData",
     "ModelView": "MjModel",
     "Options": "MjOption",
+    "Settings": "MjStatistic",
     "ContactList": "_MjContactList",
     "Spacings": "dict",
 }

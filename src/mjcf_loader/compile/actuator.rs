@@ -2,7 +2,7 @@
 
 use super::context::{Context, Ids, UserDataSize};
 use crate::actuator::{Actuator, Target};
-use crate::document::Document;
+use crate::document::TypedDocument;
 use crate::error::{ErrorKind, LoadError};
 use crate::model::{Arrays, BiasType, DynType, GainType, TrnType};
 
@@ -21,7 +21,7 @@ const STATEFUL: &str = "actdim must be 1 or left out: each activation is one num
 /// Compiles the actuators, whose user data all get the length of the longest or of `nuser_actuator`.
 pub(super) fn compile_actuators(
     context: &Context,
-    document: &Document,
+    document: &TypedDocument,
     ids: &Ids,
     arrays: &mut Arrays,
 ) -> Result<(), LoadError> {

@@ -7,7 +7,7 @@ use super::fuse::{KeptBody, places};
 use super::geom::{check_size, compile_geom, place};
 use super::geometry::{Solid, merge, principal};
 use super::joint::compile_joints;
-use crate::document::{AutoBool, Body, BodyFrame, Document, Geom, Orientation, ReplicaIndex, Site};
+use crate::document::{AutoBool, Body, BodyFrame, Geom, Orientation, ReplicaIndex, Site, TypedDocument};
 use crate::error::LoadError;
 use crate::math::{MINVAL, Quat, Vec3, add, mat_vec, quat_to_mat};
 use crate::model::Arrays;
@@ -16,7 +16,7 @@ use crate::settings::single;
 /// Compiles all bodies in order, so that ids are grouped by body; returns their elements.
 pub(super) fn compile(
     context: &Context,
-    document: &Document,
+    document: &TypedDocument,
     ids: &Ids,
     arrays: &mut Arrays,
 ) -> Result<Vec<usize>, LoadError> {
@@ -92,7 +92,7 @@ struct UserDataSizes {
 }
 
 impl UserDataSizes {
-    fn new(document: &Document) -> Self {
+    fn new(document: &TypedDocument) -> Self {
         let (size, bodies) = (&document.size, &document.bodies);
         Self {
             body: UserDataSize::new("nuser_body", size.nuser_body, bodies.iter().map(|b| &b.user)),
@@ -135,7 +135,7 @@ fn frame(body: &Body, place: &KeptBody, id: usize, arrays: &mut Arrays) {
 /// Compiles the geoms and sites of a body of the document as those of `id`, which it may be fused with; returns its inertia.
 fn compile_part(
     context: &Context,
-    document: &Document,
+    document: &TypedDocument,
     [own, id]: [usize; 2],
     ids: &Ids,
     users: &UserDataSizes,
@@ -290,7 +290,7 @@ fn subtree_masses(arrays: &mut Arrays) {
 /// Checks that bodies that move together have mass and inertia, without which the joint-space inertia is singular.
 fn check_moving_masses(
     context: &Context,
-    document: &Document,
+    document: &TypedDocument,
     places: &[KeptBody],
     arrays: &Arrays,
 ) -> Result<(), LoadError> {

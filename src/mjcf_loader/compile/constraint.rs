@@ -1,7 +1,7 @@
 //! Compiles contact pairs and excludes.
 
 use super::context::{Context, Ids};
-use crate::document::Document;
+use crate::document::TypedDocument;
 use crate::error::LoadError;
 use crate::math::order;
 use crate::model::Arrays;
@@ -9,7 +9,7 @@ use crate::model::Arrays;
 /// Compiles explicit pairs and excludes, both sorted by the pair of bodies.
 pub(super) fn compile_contacts(
     context: &Context,
-    document: &Document,
+    document: &TypedDocument,
     ids: &Ids,
     arrays: &mut Arrays,
 ) -> Result<(), LoadError> {

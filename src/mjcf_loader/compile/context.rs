@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use super::asset_name::asset_name;
 use super::geometry::orientation;
 use crate::assets::{AssetError, AssetSource};
-use crate::document::{AutoBool, Compiler, Document, Frame};
+use crate::document::{AutoBool, Compiler, Frame, TypedDocument};
 use crate::error::{ErrorKind, LoadError};
 use crate::math::{Quat, Vec3, add, mat_vec, quat_mul, quat_rotate, quat_to_mat};
 use crate::model::{Arrays, JointType};
@@ -269,7 +269,7 @@ pub(super) struct Ids {
 
 impl Ids {
     /// Collects the names of all elements. `arrays` holds the textures already, some of which are named after their files.
-    pub fn new(tree: &Tree, document: &Document, textures: &[Texture], arrays: &Arrays) -> Result<Ids, LoadError> {
+    pub fn new(tree: &Tree, document: &TypedDocument, textures: &[Texture], arrays: &Arrays) -> Result<Ids, LoadError> {
         check_unreferenced(tree, document)?;
         let bodies = &document.bodies;
         let joints = bodies.iter().flat_map(|b| &b.joints).map(|j| (j.at, &j.name));
@@ -328,7 +328,7 @@ impl Ids {
 }
 
 /// Refuses a name that is used twice by elements to which nothing refers.
-fn check_unreferenced(tree: &Tree, document: &Document) -> Result<(), LoadError> {
+fn check_unreferenced(tree: &Tree, document: &TypedDocument) -> Result<(), LoadError> {
     let lights = document.bodies.iter().flat_map(|b| &b.lights).map(|l| (l.at, &l.name));
     Names::new(tree, "light", lights)?;
     Names::new(tree, "equality", document.equalities.iter().map(|e| (e.at, &e.name)))?;

@@ -4,7 +4,7 @@ use super::context::{Context, Ids};
 use super::geometry::normalize;
 use crate::attachment::AttachedKeyframe;
 use crate::custom::{Key, TupleElement, TupleObject};
-use crate::document::Document;
+use crate::document::TypedDocument;
 use crate::error::{ErrorKind, LoadError};
 use crate::math::{Quat, Vec3, quat_at, quat_normalize};
 use crate::model::{Arrays, Keyframe};
@@ -13,7 +13,7 @@ use crate::table::Table;
 /// Compiles `<custom>`: numbers and texts for programs.
 pub(super) fn compile_custom(
     context: &Context,
-    document: &Document,
+    document: &TypedDocument,
     ids: &Ids,
     arrays: &mut Arrays,
 ) -> Result<(), LoadError> {
@@ -70,7 +70,7 @@ fn check_element(context: &Context, element: &TupleElement, ids: &Ids) -> Result
 }
 
 /// Compiles the keyframes, after everything that has coordinates or controls.
-pub(super) fn compile_keys(context: &Context, document: &Document, arrays: &mut Arrays) -> Result<(), LoadError> {
+pub(super) fn compile_keys(context: &Context, document: &TypedDocument, arrays: &mut Arrays) -> Result<(), LoadError> {
     // fewer than none are none
     let least = usize::try_from(document.size.nkey).unwrap_or(0);
     let numbers = arrays.nq + arrays.nv + arrays.na + arrays.nu() + 7 * arrays.nmocap;
@@ -117,7 +117,7 @@ pub(super) fn compile_keys(context: &Context, document: &Document, arrays: &mut 
 fn moved_key(
     context: &Context,
     key: &AttachedKeyframe,
-    document: &Document,
+    document: &TypedDocument,
     arrays: &Arrays,
 ) -> Result<Keyframe, LoadError> {
     let mut whole = Key {

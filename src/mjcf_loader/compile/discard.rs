@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 
 use super::context::Names;
 use crate::custom::TupleObject;
-use crate::document::{Document, Geom};
+use crate::document::{Geom, TypedDocument};
 use crate::error::{ErrorKind, LoadError};
 use crate::math::order;
 use crate::model::{Arrays, GeomType, ObjType};
@@ -20,7 +20,7 @@ const SHIFTED: &str = "discardvisual=\"true\" leaves out geoms in front of the o
 
 /// Marks what a document leaves out as MuJoCo 3.3.0 does with `discardvisual`: textures, materials, and geoms that collide by no mask and that
 /// nothing names. Such geoms still weigh.
-pub(crate) fn leave_out(tree: &Tree, document: &mut Document) -> Result<(), LoadError> {
+pub(crate) fn leave_out(tree: &Tree, document: &mut TypedDocument) -> Result<(), LoadError> {
     if !document.compilers[0].discardvisual {
         return Ok(());
     }
@@ -59,7 +59,7 @@ pub(crate) fn leave_out(tree: &Tree, document: &mut Document) -> Result<(), Load
 }
 
 /// Returns the names of geoms that MuJoCo keeps because something names them: pairs, tendons, tuples, and sensors of them.
-fn named(document: &Document) -> BTreeSet<String> {
+fn named(document: &TypedDocument) -> BTreeSet<String> {
     let pairs = document.pairs.iter().flat_map(|pair| [&pair.geom1, &pair.geom2]);
     let along = document.tendons.iter().flat_map(|tendon| &tendon.path);
     let wrapped = along.filter_map(|along| match along {
@@ -79,7 +79,7 @@ fn named(document: &Document) -> BTreeSet<String> {
 }
 
 /// Refuses sensors whose reference is a geom behind one that is left out, or one of these.
-fn check_references(tree: &Tree, document: &Document) -> Result<(), LoadError> {
+fn check_references(tree: &Tree, document: &TypedDocument) -> Result<(), LoadError> {
     let all = document.bodies.iter().flat_map(|body| &body.geoms);
     let before: Vec<&String> = all.take_while(|geom| !geom.left_out).map(|geom| &geom.name).collect();
     let any = document

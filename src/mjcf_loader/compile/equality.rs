@@ -47,7 +47,7 @@ struct Scope<'a> {
 }
 
 /// The two bodies or sites that a connection or a weld holds together.
-enum Pair {
+enum ConnectedBodies {
     Bodies([usize; 2]),
     /// Sites, and the bodies that they are on.
     Sites([usize; 2], [usize; 2]),
@@ -88,9 +88,9 @@ impl Scope<'_> {
     fn connect(&self, ends: &Ends) -> Result<EqualityKind, LoadError> {
         let pair = self.pair(ends, false)?;
         let (bodies, anchors, sites) = match (pair, ends.anchor) {
-            (Pair::Sites(sites, bodies), _) => (bodies, self.places(sites), Some(sites)),
-            (Pair::Bodies(bodies), Some(anchor)) => (bodies, [anchor, [0.0; 3]], None),
-            (Pair::Bodies(_), None) => {
+            (ConnectedBodies::Sites(sites, bodies), _) => (bodies, self.places(sites), Some(sites)),
+            (ConnectedBodies::Bodies(bodies), Some(anchor)) => (bodies, [anchor, [0.0; 3]], None),
+            (ConnectedBodies::Bodies(_), None) => {
                 let what = "give anchor, the point of body1 that is held, or site1 and site2 in place of bodies";
                 return Err(self.context.invalid(self.at, what));
             }
@@ -106,11 +106,11 @@ impl Scope<'_> {
 
     fn weld(&self, weld: &WeldEquality) -> Result<EqualityKind, LoadError> {
         let (bodies, [relpos, anchor], relquat, sites) = match self.pair(&weld.ends, weld.relpose.is_some())? {
-            Pair::Sites(sites, bodies) => {
+            ConnectedBodies::Sites(sites, bodies) => {
                 let [q1, q2] = sites.map(|site| self.arrays.site_quat[site]);
                 (bodies, self.places(sites), quat_mul(q1, quat_conj(q2)), Some(sites))
             }
-            Pair::Bodies(bodies) => {
+            ConnectedBodies::Bodies(bodies) => {
                 let (relpos, relquat) = pose_of(weld.relpose);
                 (bodies, [relpos, weld.ends.anchor.unwrap_or_default()], relquat, None)
             }
@@ -132,7 +132,7 @@ impl Scope<'_> {
     }
 
     /// Finds the two bodies or sites. `posed` tells whether a relative pose of bodies is given.
-    fn pair(&self, ends: &Ends, posed: bool) -> Result<Pair, LoadError> {
+    fn pair(&self, ends: &Ends, posed: bool) -> Result<ConnectedBodies, LoadError> {
         let (context, at) = (self.context, self.at);
         let of_bodies = ends.body1.is_some() || ends.body2.is_some() || ends.anchor.is_some() || posed;
         match (&ends.site1, &ends.site2, &ends.body1) {
@@ -144,7 +144,7 @@ impl Scope<'_> {
                 if body1 == body2 {
                     return Err(context.invalid(at, "a body cannot be held by itself"));
                 }
-                Ok(Pair::Bodies([body1, body2]))
+                Ok(ConnectedBodies::Bodies([body1, body2]))
             }
             (Some(site1), Some(site2), _) if !of_bodies => {
                 let find = |attribute, name| self.ids.site.find(context.tree, at, attribute, name);
@@ -152,7 +152,10 @@ impl Scope<'_> {
                 if sites[0] == sites[1] {
                     return Err(context.invalid(at, "a site cannot be held by itself"));
                 }
-                Ok(Pair::Sites(sites, sites.map(|site| self.arrays.site_bodyid[site])))
+                Ok(ConnectedBodies::Sites(
+                    sites,
+                    sites.map(|site| self.arrays.site_bodyid[site]),
+                ))
             }
             (None, None, None) => Err(context.invalid(at, "give body1, or site1 and site2")),
             _ if of_bodies => Err(context.invalid(at, "give bodies or sites, not both")),

@@ -2,7 +2,7 @@
 
 use super::context::Context;
 use super::geometry::{Solid, merge};
-use crate::document::Document;
+use crate::document::TypedDocument;
 use crate::error::LoadError;
 use crate::math::{MINVAL, Quat, Vec3, add, quat_mul, quat_rotate};
 
@@ -51,7 +51,7 @@ impl FusedBody {
 }
 
 /// Returns the bodies that remain, in document order.
-pub(super) fn places(context: &Context, document: &Document) -> Result<Vec<KeptBody>, LoadError> {
+pub(super) fn places(context: &Context, document: &TypedDocument) -> Result<Vec<KeptBody>, LoadError> {
     let fuses = fuses(document);
     let mut places: Vec<KeptBody> = Vec::with_capacity(document.bodies.len());
     // for each body of the document: the id of the body that it becomes or is fused with, and in the second case its index among those
@@ -85,7 +85,7 @@ pub(super) fn places(context: &Context, document: &Document) -> Result<Vec<KeptB
 
 /// Tells whether bodies of a document are fused. As in MuJoCo 3.3.0, none is if the document has a camera, a light, or any element of a kind
 /// that may refer to a body or to one of its elements, whatever it refers to.
-fn fuses(d: &Document) -> bool {
+fn fuses(d: &TypedDocument) -> bool {
     let named = [
         d.skins.len(),
         d.pairs.len(),

@@ -3,7 +3,7 @@
 use super::asset_name::asset_name;
 use super::context::Context;
 use crate::assets::AssetSource;
-use crate::document::Document;
+use crate::document::TypedDocument;
 use crate::error::{ErrorKind, LoadError};
 use crate::formats::heights::{HeightFormat, Heights};
 use crate::limits::Limits;
@@ -14,7 +14,7 @@ use crate::model;
 /// the limits allow for elements of meshes.
 pub(super) fn compile_hfields(
     context: &Context,
-    document: &Document,
+    document: &TypedDocument,
     source: &dyn AssetSource,
 ) -> Result<Vec<model::HField>, LoadError> {
     // all height fields together: each alone could be within the limits

@@ -31,7 +31,7 @@ pub(super) use flex::expand_flexes;
 pub use geometry::bounding_radius;
 pub(super) use geometry::{frame_to_quat, normalize, volume};
 
-use super::document::Document;
+use super::document::TypedDocument;
 use super::error::LoadError;
 use super::xml::Tree;
 use crate::assets::AssetSource;
@@ -42,7 +42,7 @@ use crate::model::{Arrays, SameFrame};
 /// folders of the models that name them; images are not decoded. Returns the elements of the bodies beside it.
 pub(super) fn compile(
     tree: &Tree,
-    document: &Document,
+    document: &TypedDocument,
     source: &dyn AssetSource,
 ) -> Result<(Arrays, Vec<usize>), LoadError> {
     let (name, opt) = (document.model.clone(), document.option.clone());

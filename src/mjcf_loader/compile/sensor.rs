@@ -1,7 +1,7 @@
 //! Compiles sensors.
 
 use super::context::{Context, Ids, UserDataSize};
-use crate::document::Document;
+use crate::document::TypedDocument;
 use crate::error::{ErrorKind, LoadError};
 use crate::model::{Arrays, DataType, GeomType, JointType, ObjType, SensorType};
 use crate::sensor::{Between, FrameObject, InFrame, InPicture, Object, OfFrame, OfUser, Sensor};
@@ -9,7 +9,7 @@ use crate::sensor::{Between, FrameObject, InFrame, InPicture, Object, OfFrame, O
 /// Compiles the sensors, whose values follow one another.
 pub(super) fn compile_sensors(
     context: &Context,
-    document: &Document,
+    document: &TypedDocument,
     ids: &Ids,
     arrays: &mut Arrays,
 ) -> Result<(), LoadError> {

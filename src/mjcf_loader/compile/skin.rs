@@ -3,7 +3,7 @@
 use super::context::{Context, Ids, Names, named};
 use super::mesh::{indices, rows};
 use crate::assets::AssetSource;
-use crate::document::Document;
+use crate::document::TypedDocument;
 use crate::error::{ErrorKind, LoadError};
 use crate::formats::skn::{BoneFile, SkinFile};
 use crate::math::MINVAL;
@@ -25,7 +25,7 @@ const TOTAL: &str = "each vertex of a skin needs bones whose vertweight is above
 /// as the limits allow for elements of meshes.
 pub(super) fn compile_skins(
     context: &Context,
-    document: &Document,
+    document: &TypedDocument,
     ids: &Ids,
     source: &dyn AssetSource,
 ) -> Result<Vec<model::Skin>, LoadError> {

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use super::document::{Document, Node};
+use super::document::{Document, ElementNode};
 use super::element_id::ElementId;
 use super::error::EditError;
 use super::kinds::{Kind, references, referred};
@@ -68,7 +68,7 @@ impl Document {
         suffix: &str,
     ) -> Result<ElementId, EditError> {
         let naming = Naming { prefix, suffix };
-        let holds = |node: &Node| !node.in_class && node.rule.children.iter().any(|rule| rule.name == "body");
+        let holds = |node: &ElementNode| !node.in_class && node.rule.children.iter().any(|rule| rule.name == "body");
         let above = self.node(parent)?;
         if !holds(above) {
             return Err(EditError::Unattachable(

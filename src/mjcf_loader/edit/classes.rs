@@ -1,7 +1,7 @@
 //! Default classes of a document that is attached to another.
 
 use super::attach::Naming;
-use super::document::{Document, Node};
+use super::document::{Document, ElementNode};
 use super::error::EditError;
 use super::values::MAIN;
 use crate::schema::{DEFAULT, Rule};
@@ -63,7 +63,7 @@ impl Document {
     }
 
     /// Adds the attributes of an element to that of the same name in a class.
-    fn merge(&mut self, element: &Node, class: usize) {
+    fn merge(&mut self, element: &ElementNode, class: usize) {
         let named = |at: &&usize| std::ptr::eq(self.nodes[**at].rule, element.rule);
         let at = match self.nodes[class].children.iter().find(named) {
             Some(&at) => at,

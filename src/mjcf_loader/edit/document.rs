@@ -12,7 +12,7 @@ use crate::schema::{DEFAULT, Rule};
 
 /// An element with its attributes as text.
 #[derive(Clone)]
-pub(super) struct Node {
+pub(super) struct ElementNode {
     pub rule: &'static Rule,
     /// Whether it stands in a default class.
     pub in_class: bool,
@@ -22,7 +22,7 @@ pub(super) struct Node {
     pub removed: bool,
 }
 
-impl Node {
+impl ElementNode {
     pub fn attribute(&self, name: &str) -> Option<&str> {
         let found = self.attributes.iter().find(|(other, _)| *other == name);
         found.map(|(_, text)| text.as_str())
@@ -48,7 +48,7 @@ impl Node {
 /// An MJCF document as a tree of elements that can be edited. See the [module](super).
 #[derive(Clone)]
 pub struct Document {
-    pub(super) nodes: Vec<Node>,
+    pub(super) nodes: Vec<ElementNode>,
     pub(super) path: String,
     pub(super) limits: Limits,
 }
@@ -79,7 +79,7 @@ impl Document {
     }
 
     pub(super) fn empty(path: String, limits: Limits) -> Self {
-        let root = Node {
+        let root = ElementNode {
             rule: &MUJOCO,
             in_class: false,
             parent: None,
@@ -137,7 +137,7 @@ impl Document {
         self.nodes.get(id.0).is_some_and(|node| !node.removed)
     }
 
-    pub(super) fn node(&self, id: ElementId) -> Result<&Node, EditError> {
+    pub(super) fn node(&self, id: ElementId) -> Result<&ElementNode, EditError> {
         let node = self.nodes.get(id.0).filter(|node| !node.removed);
         node.ok_or(EditError::NoElement(id))
     }
@@ -274,7 +274,7 @@ impl Document {
 
     pub(super) fn push(&mut self, parent: usize, rule: &'static Rule, index: usize) -> usize {
         let above = &self.nodes[parent];
-        let new = Node {
+        let new = ElementNode {
             rule,
             in_class: above.in_class || above.rule.name == DEFAULT || rule.name == DEFAULT,
             parent: Some(parent),
@@ -295,7 +295,7 @@ impl Document {
     }
 }
 
-pub(super) fn attr_of(node: &Node, name: &str) -> Result<&'static Attr, EditError> {
+pub(super) fn attr_of(node: &ElementNode, name: &str) -> Result<&'static Attr, EditError> {
     node.attr(name).ok_or_else(|| EditError::UnknownAttribute {
         element: node.rule.name,
         name: name.to_owned(),

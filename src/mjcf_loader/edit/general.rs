@@ -1,6 +1,6 @@
 //! Actuators of all kinds as `general` ones.
 
-use super::document::{Document, Node};
+use super::document::{Document, ElementNode};
 use super::element_id::ElementId;
 use super::error::EditError;
 use super::kinds::Kind;
@@ -86,7 +86,7 @@ impl Document {
         Ok(actuator)
     }
 
-    fn drive(&self, actuator: &mut Actuator, node: &Node) -> Result<(), EditError> {
+    fn drive(&self, actuator: &mut Actuator, node: &ElementNode) -> Result<(), EditError> {
         let element = node.rule.name;
         let wrong = |kind| EditError::Value { element, kind };
         let mut values = Vec::new();

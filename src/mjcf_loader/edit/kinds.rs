@@ -1,6 +1,6 @@
 //! Kinds of elements, and which attributes name elements of which kind.
 
-use super::document::{Document, Node};
+use super::document::{Document, ElementNode};
 use super::element_id::ElementId;
 use crate::schema::DEFAULT;
 
@@ -77,7 +77,7 @@ fn object(kind: &str) -> Option<Kind> {
 }
 
 /// Returns the kind of what an attribute names; `None` for one that names no element.
-pub(super) fn referred(node: &Node, attribute: &str) -> Option<Kind> {
+pub(super) fn referred(node: &ElementNode, attribute: &str) -> Option<Kind> {
     let kind = match attribute {
         "body" | "body1" | "body2" if node.rule.name != "attach" => Kind::Body,
         "target" => Kind::Body,
@@ -101,7 +101,7 @@ pub(super) fn referred(node: &Node, attribute: &str) -> Option<Kind> {
 }
 
 /// Returns what an element names: the kind, the attribute and the name.
-pub(super) fn references(node: &Node) -> impl Iterator<Item = (Kind, &'static str, &str)> {
+pub(super) fn references(node: &ElementNode) -> impl Iterator<Item = (Kind, &'static str, &str)> {
     let named = node.attributes.iter().filter(|(_, text)| !text.is_empty());
     named.filter_map(|(attribute, text)| Some((referred(node, attribute)?, *attribute, text.as_str())))
 }

@@ -1,6 +1,6 @@
 //! Names of files, for elements that come from other folders.
 
-use super::document::{Document, Node};
+use super::document::{Document, ElementNode};
 use crate::assets::{AssetSource, directory, is_absolute};
 use crate::xml::Tree;
 
@@ -26,7 +26,7 @@ fn folders(element: &str) -> Option<[&'static str; 2]> {
 }
 
 /// Rewrites the files of an element of an included document that are beside that document, so that the document itself finds them.
-pub(super) fn rebase(node: &mut Node, tree: &Tree, at: usize, source: &dyn AssetSource) {
+pub(super) fn rebase(node: &mut ElementNode, tree: &Tree, at: usize, source: &dyn AssetSource) {
     let (main, own) = (&tree.files()[0], tree.file(at));
     let Some(names) = folders(node.rule.name).filter(|_| own != main) else {
         return;
@@ -116,7 +116,7 @@ impl Document {
     }
 
     /// Returns the files of an element of another document as this one names them.
-    pub(super) fn renamed_files(&self, from: &Document, node: &Node) -> Vec<(&'static str, String)> {
+    pub(super) fn renamed_files(&self, from: &Document, node: &ElementNode) -> Vec<(&'static str, String)> {
         let (Some(here), Some(there)) = (self.files_in(node.rule.name), from.files_in(node.rule.name)) else {
             return Vec::new();
         };

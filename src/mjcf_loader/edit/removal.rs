@@ -1,6 +1,6 @@
 //! Elements taken out of a document, and what refers to them.
 
-use super::document::{Document, Node, ROOT};
+use super::document::{Document, ElementNode, ROOT};
 use super::element_id::ElementId;
 use super::error::EditError;
 use super::kinds::{Kind, loses_meaning, references};
@@ -21,7 +21,8 @@ impl Document {
             }
             for at in 0..self.nodes.len() {
                 let node = &self.nodes[at];
-                let refers = |node: &Node| references(node).any(|(other, _, text)| other == kind && text == name);
+                let refers =
+                    |node: &ElementNode| references(node).any(|(other, _, text)| other == kind && text == name);
                 if node.removed || !loses_meaning(self, at) || !refers(node) {
                     continue;
                 }

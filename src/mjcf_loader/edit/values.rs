@@ -21,7 +21,7 @@ impl Document {
     pub fn value(&self, id: ElementId, name: &str) -> Result<String, EditError> {
         let node = self.node(id)?;
         let attr = attr_of(node, name)?;
-        let several = matches!(attr.kind, crate::attribute::Kind::Reals { min, max, .. } if min < max);
+        let several = matches!(attr.kind, crate::attribute::AttributeKind::Reals { min, max, .. } if min < max);
         match node.attribute(name) {
             // numbers that are not given keep the values of the class
             Some(text) if several && name != "springlength" => {

@@ -8,7 +8,7 @@ use super::keys::{resize_keys, say_keys};
 use crate::attached::{Reference, hanging};
 use crate::attachment::{CopyCount, ElementKind, MissingReference};
 use crate::compile::stem;
-use crate::document::{Attach, Body, Document};
+use crate::document::{Attach, Body, TypedDocument};
 use crate::error::{ErrorKind, LoadError};
 use crate::math::order;
 use crate::schema::Element;
@@ -23,7 +23,7 @@ pub(super) fn attach_model(
     e: &Element,
     spot: Insertion,
     tree: &Tree,
-    document: &mut Document,
+    document: &mut TypedDocument,
 ) -> Result<(), LoadError> {
     let attach = Attach::read(e);
     // out of the document while it is read, because the document is written at the same time
@@ -141,10 +141,10 @@ impl AttachedPart<'_> {
 
 fn take(
     attach: &Attach,
-    model: &mut Document,
+    model: &mut TypedDocument,
     spot: Insertion,
     tree: &Tree,
-    document: &mut Document,
+    document: &mut TypedDocument,
 ) -> Result<(), LoadError> {
     document.copied.add(CopyCount::of(model), attach.at, tree)?;
     // before anything is copied, so that the copies take their part of each keyframe with them
@@ -177,7 +177,7 @@ fn take(
 
 /// Copies bodies with their joints, geoms, sites, cameras and lights, and the frames that they are in. The values of keyframes move with a body;
 /// a body that is not copied keeps them for the next `<attach>` of this model.
-fn take_tree(taking: &AttachedPart, from: &mut Document, spot: Insertion, document: &mut Document) {
+fn take_tree(taking: &AttachedPart, from: &mut TypedDocument, spot: Insertion, document: &mut TypedDocument) {
     let bodies = &from.bodies[taking.bodies.clone()];
     let mut used = vec![false; from.frames.len()];
     // not the frame of the root, which the place of the <attach> replaces
@@ -260,7 +260,7 @@ fn take_body(taking: &AttachedPart, body: &mut Body, moved: impl Fn(Option<usize
 }
 
 /// Copies assets, skins and custom data, whether anything refers to them or not.
-fn take_assets(taking: &AttachedPart, from: &Document, document: &mut Document) {
+fn take_assets(taking: &AttachedPart, from: &TypedDocument, document: &mut TypedDocument) {
     for texture in &from.textures {
         let mut texture = texture.clone();
         taking.rename_asset(&mut texture.name, texture.file.as_deref());
@@ -304,7 +304,7 @@ fn take_assets(taking: &AttachedPart, from: &Document, document: &mut Document) 
 }
 
 /// Copies the elements that refer to others, if all of those are copied.
-fn take_referring(taking: &mut AttachedPart, from: &mut Document, document: &mut Document) {
+fn take_referring(taking: &mut AttachedPart, from: &mut TypedDocument, document: &mut TypedDocument) {
     let absent = &mut document.absent;
     taking.copy(&from.pairs, &mut document.pairs, absent);
     taking.copy(&from.excludes, &mut document.excludes, absent);
@@ -337,7 +337,7 @@ fn take_referring(taking: &mut AttachedPart, from: &mut Document, document: &mut
 
 /// Refuses a document in which MuJoCo may find another element for a reference that was not copied. It runs when the whole document is
 /// read, because the other element may come later.
-pub(super) fn check_absent(tree: &Tree, document: &Document) -> Result<(), LoadError> {
+pub(super) fn check_absent(tree: &Tree, document: &TypedDocument) -> Result<(), LoadError> {
     if document.absent.is_empty() {
         return Ok(());
     }

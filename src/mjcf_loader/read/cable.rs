@@ -4,7 +4,7 @@ use super::cable_skin::{self, SkinGrid};
 use super::insertion::Insertion;
 use crate::composite::{Composite, CompositeSkin, CompositeType, Link, Prototypes};
 use crate::custom::Text;
-use crate::document::{AutoBool, Body, Document, Orientation};
+use crate::document::{AutoBool, Body, Orientation, TypedDocument};
 use crate::error::{ErrorKind, LoadError, UNREAD};
 use crate::model::{GeomType, JointType};
 use crate::relation::Exclude;
@@ -22,7 +22,7 @@ const SHAPE: &str =
 
 /// Tells whether MuJoCo would lose a composite: one in a `<replicate>` without a body around it is not copied. Other frames around it are
 /// ignored.
-fn is_lost(spot: Insertion, document: &Document) -> bool {
+fn is_lost(spot: Insertion, document: &TypedDocument) -> bool {
     let frame = |id: Option<usize>| id.map(|id| &document.frames[id]);
     std::iter::successors(frame(spot.within), |inner| frame(inner.within)).any(|frame| frame.copy.is_some())
 }
@@ -52,7 +52,7 @@ pub(super) fn prototypes(e: &Element) -> Result<Prototypes, &'static str> {
 }
 
 /// Adds a cable.
-pub(super) fn cable(e: &Element, spot: Insertion, tree: &Tree, document: &mut Document) -> Result<(), LoadError> {
+pub(super) fn cable(e: &Element, spot: Insertion, tree: &Tree, document: &mut TypedDocument) -> Result<(), LoadError> {
     let invalid = |what| tree.error(e.at, ErrorKind::Invalid(what));
     let composite = Composite::read(e);
     if composite.kind == CompositeType::Gone {

@@ -4,7 +4,7 @@ use super::attach::attach_model;
 use super::cable::cable;
 use super::insertion::{Insertion, known};
 use super::{Classes, flex, replicate, with};
-use crate::document::{Body, BodyFrame, Camera, Document, Geom, Inertial, Light, Site};
+use crate::document::{Body, BodyFrame, Camera, Geom, Inertial, Light, Site, TypedDocument};
 use crate::error::{ErrorKind, LoadError, UNREAD};
 use crate::joint::{FreeJoint, Joint};
 use crate::model::JointType;
@@ -17,7 +17,7 @@ pub(super) fn content(
     spot: Insertion,
     around: &str,
     classes: &Classes,
-    document: &mut Document,
+    document: &mut TypedDocument,
 ) -> Result<(), LoadError> {
     for e in &parent.children {
         let inner = e.text("childclass").unwrap_or(around);
@@ -54,7 +54,7 @@ fn child(
     spot: Insertion,
     inner: &str,
     classes: &Classes,
-    document: &mut Document,
+    document: &mut TypedDocument,
 ) -> Result<usize, LoadError> {
     known(e, inner, classes)?;
     let body = Body {
@@ -73,7 +73,7 @@ fn frame(
     spot: Insertion,
     inner: &str,
     classes: &Classes,
-    document: &mut Document,
+    document: &mut TypedDocument,
 ) -> Result<usize, LoadError> {
     known(e, inner, classes)?;
     let frame = BodyFrame {

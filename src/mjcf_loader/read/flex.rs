@@ -2,7 +2,7 @@
 
 use super::Classes;
 use super::insertion::Insertion;
-use crate::document::Document;
+use crate::document::TypedDocument;
 use crate::error::{ErrorKind, LoadError, UNREAD};
 use crate::flex::{Flex, FlexComp, FlexDofs, Pin};
 use crate::schema::Element;
@@ -39,7 +39,7 @@ pub(super) fn flexcomp(
     e: &Element,
     spot: Insertion,
     classes: &Classes,
-    document: &mut Document,
+    document: &mut TypedDocument,
 ) -> Result<(), LoadError> {
     let wrong = |what| classes.error(e, ErrorKind::Invalid(what));
     let mut comp = FlexComp::read(e);

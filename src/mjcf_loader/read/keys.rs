@@ -5,7 +5,7 @@ use crate::actuator::Actuator;
 use crate::attached::{Sizes, na};
 use crate::attachment::AttachedKeyframe;
 use crate::custom::Key;
-use crate::document::{Body, Document};
+use crate::document::{Body, TypedDocument};
 use crate::error::{ErrorKind, LoadError};
 use crate::xml::Tree;
 
@@ -14,12 +14,12 @@ use crate::xml::Tree;
 /// # Errors
 /// A keyframe has another size than the state has at this time.
 pub(super) fn say_keys(
-    document: &mut Document,
+    document: &mut TypedDocument,
     (prefix, suffix): (&str, &str),
     tree: &Tree,
 ) -> Result<Vec<AttachedKeyframe>, LoadError> {
     let sizes = Sizes::of(document);
-    let Document {
+    let TypedDocument {
         keys,
         bodies,
         actuators,
@@ -78,7 +78,7 @@ fn say(key: &Key, name: &str, bodies: &mut [Body], actuators: &mut [Actuator]) {
 
 /// Makes the document's own keyframes as long as its state, after elements were added. MuJoCo 3.3.0 does not know at this point in which units
 /// angles are, nor the coordinates of ball and free joints: those become 0, the others `ref` as it is written.
-pub(super) fn resize_keys(document: &mut Document) {
+pub(super) fn resize_keys(document: &mut TypedDocument) {
     if document.keys.is_empty() {
         return;
     }

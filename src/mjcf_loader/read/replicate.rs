@@ -11,7 +11,7 @@ use super::insertion::{Insertion, known};
 use super::keys::{resize_keys, say_keys};
 use crate::attached::{NameTable, Reference, hanging, said};
 use crate::attachment::ElementKind;
-use crate::document::{Body, BodyFrame, Document, Orientation, ReplicaIndex, Replicate};
+use crate::document::{Body, BodyFrame, Orientation, ReplicaIndex, Replicate, TypedDocument};
 use crate::error::{ErrorKind, LoadError};
 use crate::schema::Element;
 use crate::table::Table;
@@ -46,7 +46,7 @@ pub(super) fn open(
     spot: Insertion,
     inner: &str,
     classes: &Classes,
-    document: &mut Document,
+    document: &mut TypedDocument,
 ) -> Result<ReplicateContent, LoadError> {
     known(e, inner, classes)?;
     let original = ReplicateContent {
@@ -81,7 +81,7 @@ impl ReplicateContent {
 
     /// Makes the copies and takes the original away. As [`open`], it is kept out of `content`.
     #[inline(never)]
-    pub fn copy(&self, spot: Insertion, tree: &Tree, document: &mut Document) -> Result<(), LoadError> {
+    pub fn copy(&self, spot: Insertion, tree: &Tree, document: &mut TypedDocument) -> Result<(), LoadError> {
         let at = self.replicate.at;
         let count = usize::try_from(self.replicate.count).unwrap_or(0);
         let joints = &document.bodies[self.body].joints;
@@ -138,7 +138,7 @@ impl ReplicateContent {
         ends: (usize, usize),
         (number, previous): (usize, Option<usize>),
         suffix: &str,
-        document: &mut Document,
+        document: &mut TypedDocument,
     ) {
         let by_frame = document.frames.len() - self.frame;
         // frames of the original become those of the copy; frames around the <replicate> stay
@@ -180,7 +180,7 @@ impl ReplicateContent {
     }
 
     /// Removes the original. Bodies and frames behind it move up.
-    fn take_away(&self, spot: Insertion, ends: (usize, usize), document: &mut Document) {
+    fn take_away(&self, spot: Insertion, ends: (usize, usize), document: &mut TypedDocument) {
         let (bodies, frames) = (ends.0 - self.body, ends.1 - self.frame);
         document.bodies.drain(self.body..ends.0);
         document.frames.drain(self.frame..ends.1);
@@ -245,7 +245,7 @@ fn amount(bodies: &[Body]) -> usize {
 }
 
 /// Refuses a name that two elements of a kind have: of those that refer to copies, one may be lost before the compiler looks.
-fn distinct(document: &Document, tree: &Tree) -> Result<(), LoadError> {
+fn distinct(document: &TypedDocument, tree: &Tree) -> Result<(), LoadError> {
     let tendons = document.tendons.iter().map(|e| (e.at, "tendon", &e.name));
     let actuators = document.actuators.iter().map(|e| (e.at, "actuator", &e.name));
     let equalities = document.equalities.iter().map(|e| (e.at, "equality", &e.name));
@@ -262,7 +262,7 @@ fn distinct(document: &Document, tree: &Tree) -> Result<(), LoadError> {
 }
 
 /// Counts the elements that are searched for references to a copy.
-fn look(document: &mut Document, at: usize, tree: &Tree) -> Result<(), LoadError> {
+fn look(document: &mut TypedDocument, at: usize, tree: &Tree) -> Result<(), LoadError> {
     let pieces: usize = document.tendons.iter().map(|tendon| tendon.path.len()).sum();
     let referring = document.pairs.len() + document.excludes.len() + document.equalities.len();
     // every copy searches all elements again: without a limit a short document takes quadratic time
@@ -276,7 +276,7 @@ fn look(document: &mut Document, at: usize, tree: &Tree) -> Result<(), LoadError
 }
 
 /// Moves the document's keyframes, with a suffix, behind its own.
-fn move_keys(document: &mut Document, suffix: &str, at: usize, tree: &Tree) -> Result<(), LoadError> {
+fn move_keys(document: &mut TypedDocument, suffix: &str, at: usize, tree: &Tree) -> Result<(), LoadError> {
     let said = said(document);
     document.copied.add_keys(said, at, tree)?;
     let keys = say_keys(document, ("", suffix), tree)?;
@@ -285,7 +285,7 @@ fn move_keys(document: &mut Document, suffix: &str, at: usize, tree: &Tree) -> R
 }
 
 /// Copies the elements that refer to the original.
-fn copy_referring(suffix: &str, names: &mut NameTable, document: &mut Document) {
+fn copy_referring(suffix: &str, names: &mut NameTable, document: &mut TypedDocument) {
     copy_list(&mut document.pairs, suffix, names);
     copy_list(&mut document.excludes, suffix, names);
     let tendons = copy_list(&mut document.tendons, suffix, names);
@@ -314,7 +314,7 @@ fn copy_list<T: Reference>(list: &mut Vec<T>, suffix: &str, names: &NameTable) -
 }
 
 /// Removes the elements that refer to the original. Elements whose references never existed stay, so that they are reported as errors.
-fn forget_lost(before: &NameTable, document: &mut Document) {
+fn forget_lost(before: &NameTable, document: &mut TypedDocument) {
     let mut now = NameTable::of(document);
     keep(&mut document.pairs, before, &now);
     keep(&mut document.excludes, before, &now);

@@ -32,7 +32,7 @@ fn every_element_that_the_rules_allow_has_a_reader() {
         by_name: BTreeMap::from([(MAIN.to_owned(), Class::default())]),
     };
     let wrong = |what| tree.error(0, ErrorKind::Invalid(what));
-    let document = || Document::new(0, String::new());
+    let document = || TypedDocument::new(0, String::new());
     let mut count = 0;
     let mut each = |path: &[&str], read: &dyn Fn(&Element) -> Result<(), LoadError>| {
         let parent = rule(path);

@@ -1,11 +1,11 @@
 //! `<flexcomp>`: a flex of a given shape, with a body for each vertex.
 
-use super::shapes::Shape;
+use super::shapes::FlexShape;
 use super::{FLEX_ELEMENTS, indices};
 use crate::assets::AssetSource;
 use crate::compile::context::Context;
 use crate::compile::normalize;
-use crate::document::{Body, Document, Inertial};
+use crate::document::{Body, Inertial, TypedDocument};
 use crate::error::{ErrorKind, LoadError};
 use crate::flex::{Flex, FlexComp, FlexCompType, FlexDofs};
 use crate::formats::mesh::{MeshFormat, Triangles};
@@ -36,7 +36,11 @@ const CENTER: &str =
     "a vertex of a radial flexcomp is at the origin of the parent: move the flexcomp, or pin the vertex";
 
 /// Adds the bodies, flexes and equalities of all `<flexcomp>`s. Their files are looked up in `source`.
-pub(crate) fn expand_flexes(tree: &Tree, document: &mut Document, source: &dyn AssetSource) -> Result<(), LoadError> {
+pub(crate) fn expand_flexes(
+    tree: &Tree,
+    document: &mut TypedDocument,
+    source: &dyn AssetSource,
+) -> Result<(), LoadError> {
     if document.flexcomps.is_empty() {
         return Ok(());
     }
@@ -115,7 +119,7 @@ impl Vertices {
                 if points.is_none_or(|points| points > *left) {
                     return Err(too_much());
                 }
-                Shape::of(&comp, count).map_err(invalid)?
+                FlexShape::of(&comp, count).map_err(invalid)?
             }
         };
         *left = left
@@ -164,13 +168,13 @@ fn check(comp: &FlexComp) -> Result<[usize; 3], &'static str> {
 }
 
 /// Returns the points and elements that the document gives.
-fn written(comp: &FlexComp) -> Result<Shape, &'static str> {
+fn written(comp: &FlexComp) -> Result<FlexShape, &'static str> {
     let (points, rest) = comp.point.as_chunks::<3>();
     let whole = comp.element.len().is_multiple_of(comp.look.dim + 1);
     if points.is_empty() || comp.element.is_empty() || !rest.is_empty() || !whole {
         return Err(WRITTEN);
     }
-    Ok(Shape {
+    Ok(FlexShape {
         points: points.to_vec(),
         elements: indices(&comp.element, points.len()).ok_or(super::RANGE)?,
         texcoord: Vec::new(),
@@ -178,7 +182,7 @@ fn written(comp: &FlexComp) -> Result<Shape, &'static str> {
 }
 
 /// Reads the points and elements of a mesh.
-fn mesh(context: &Context, comp: &FlexComp, source: &dyn AssetSource, left: usize) -> Result<Shape, LoadError> {
+fn mesh(context: &Context, comp: &FlexComp, source: &dyn AssetSource, left: usize) -> Result<FlexShape, LoadError> {
     let invalid = |message| context.invalid(comp.at, message);
     let Some(file) = comp.file.as_deref().filter(|file| !file.is_empty()) else {
         return Err(invalid(FILE));
@@ -206,7 +210,7 @@ fn mesh(context: &Context, comp: &FlexComp, source: &dyn AssetSource, left: usiz
     } else {
         triangles
     };
-    let mut shape = Shape {
+    let mut shape = FlexShape {
         points: triangles.vert.iter().map(|v| v.map(f64::from)).collect(),
         elements: triangles.face.as_flattened().iter().map(|&v| v as usize).collect(),
         texcoord: Vec::new(),
@@ -276,12 +280,12 @@ fn pinned(comp: &FlexComp, points: usize, count: [usize; 3]) -> Result<Vec<bool>
 /// Makes the bodies and the flex.
 fn assemble(
     comp: FlexComp,
-    shape: Shape,
+    shape: FlexShape,
     pinned: Vec<bool>,
     parent: &str,
     direct: bool,
 ) -> Result<Vertices, &'static str> {
-    let Shape {
+    let FlexShape {
         mut points,
         mut elements,
         texcoord,

@@ -9,7 +9,7 @@ use std::collections::BTreeMap;
 
 use super::context::{Context, Ids, named};
 use super::mesh::rows;
-use crate::document::Document;
+use crate::document::TypedDocument;
 use crate::error::{ErrorKind, LoadError};
 use crate::flex::Flex;
 use crate::math::{Quat, Vec3, add, cross, dot, quat_mul, quat_rotate, sub};
@@ -43,7 +43,7 @@ const EDGES: [&[[usize; 2]]; 3] = [
 /// Compiles all flexes, once the bodies are compiled.
 pub(super) fn compile_flexes(
     context: &Context,
-    document: &Document,
+    document: &TypedDocument,
     ids: &Ids,
     arrays: &mut Arrays,
 ) -> Result<(), LoadError> {

@@ -15,7 +15,7 @@ const LONE: &str = "a circle needs a count of three at least, one more than its 
 
 /// A shape: its points, the vertices of its elements, and texture coordinates, where it has them.
 #[derive(Default)]
-pub(super) struct Shape {
+pub(super) struct FlexShape {
     pub points: Vec<Vec3>,
     pub elements: Vec<usize>,
     pub texcoord: Vec<f64>,
@@ -30,7 +30,7 @@ struct Lattice {
     textured: bool,
 }
 
-impl Shape {
+impl FlexShape {
     /// Makes the shape of a `<flexcomp>` that is neither a mesh nor written point by point.
     pub fn of(comp: &FlexComp, count: [usize; 3]) -> Result<Self, &'static str> {
         let lattice = Lattice {
@@ -92,14 +92,14 @@ impl Lattice {
     }
 
     /// Adds texture coordinates in single precision.
-    fn paint(&self, shape: &mut Shape, [a, i]: [usize; 2], [b, k]: [usize; 2]) {
+    fn paint(&self, shape: &mut FlexShape, [a, i]: [usize; 2], [b, k]: [usize; 2]) {
         if self.textured {
             let coordinate = |axis, i: usize| f64::from(i as f32 / self.intervals(axis) as f32);
             shape.texcoord.extend([coordinate(a, i), coordinate(b, k)]);
         }
     }
 
-    fn line(&self, shape: &mut Shape) {
+    fn line(&self, shape: &mut FlexShape) {
         for i in 0..self.count[0] {
             shape.points.push([self.along(0, i), 0.0, 0.0]);
             if i + 1 < self.count[0] {
@@ -109,7 +109,7 @@ impl Lattice {
     }
 
     /// Makes a closed line, of one point fewer than the count.
-    fn circle(&self, shape: &mut Shape) {
+    fn circle(&self, shape: &mut FlexShape) {
         let last = self.count[0] - 1;
         let theta = 2.0 * PI / last as f64;
         let radius = self.spacing[0] / pxfm::f_sin(theta / 2.0) / 2.0;
@@ -122,7 +122,7 @@ impl Lattice {
         }
     }
 
-    fn square(&self, shape: &mut Shape) {
+    fn square(&self, shape: &mut FlexShape) {
         let [nx, ny, nz] = self.count;
         let disc = self.kind == FlexCompType::Disc;
         for ix in 0..nx {
@@ -156,7 +156,7 @@ impl Lattice {
         }
     }
 
-    fn cubes(&self, shape: &mut Shape) {
+    fn cubes(&self, shape: &mut FlexShape) {
         const TETRAHEDRA: [[usize; 4]; 6] = [
             [0, 3, 1, 7],
             [0, 1, 4, 7],
@@ -183,7 +183,7 @@ impl Lattice {
     }
 
     /// Makes tetrahedra between the centre, which is point 0, and the squares on the sides.
-    fn solid(&self, shape: &mut Shape) {
+    fn solid(&self, shape: &mut FlexShape) {
         shape.points.push([0.0; 3]);
         self.paint(shape, [0, 0], [0, 0]);
         // axes across and along each pair of sides; points on an edge belong to the first side that they are on

@@ -16,7 +16,7 @@ use super::asset_name::asset_name;
 use super::context::{Context, Ids};
 use super::geometry::normalize;
 use crate::assets::AssetSource;
-use crate::document::Document;
+use crate::document::TypedDocument;
 use crate::error::LoadError;
 use crate::math::hull::quickhull;
 use crate::math::qhull;
@@ -29,7 +29,7 @@ use source::Surface;
 /// Compiles all meshes. Their files are looked up in `source`.
 pub(super) fn compile_meshes(
     context: &Context,
-    document: &Document,
+    document: &TypedDocument,
     ids: &Ids,
     source: &dyn AssetSource,
     arrays: &mut Arrays,
@@ -54,7 +54,7 @@ pub(super) fn compile_meshes(
 
 /// Tells which meshes need a hull: those of geoms that may touch others by their masks. Geoms that touch in a `<pair>` alone do so by all
 /// their vertices, as in MuJoCo.
-fn touching(context: &Context, document: &Document, ids: &Ids) -> Result<Vec<bool>, LoadError> {
+fn touching(context: &Context, document: &TypedDocument, ids: &Ids) -> Result<Vec<bool>, LoadError> {
     let mut touching = vec![false; document.meshes.len()];
     for geom in document.bodies.iter().flat_map(|body| &body.geoms) {
         if let Some(name) = &geom.mesh
