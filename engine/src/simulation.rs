@@ -35,7 +35,7 @@ pub struct Simulation {
 }
 
 /// An error of a [`Simulation`].
-#[derive(Debug, thiserror::Error)]
+#[derive(thiserror::Error)]
 #[non_exhaustive]
 pub enum SimulationError {
     /// The path of the document is invalid.
@@ -82,6 +82,13 @@ fn listed(names: &[String]) -> String {
         "none with a name".to_owned()
     } else {
         named.join(", ")
+    }
+}
+
+/// The same text as `Display`, so that a program whose `main` returns the error prints the sentence.
+impl fmt::Debug for SimulationError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        fmt::Display::fmt(self, f)
     }
 }
 
@@ -147,12 +154,20 @@ impl Simulation {
     /// ([`SoftOptions::post_constraint`]).
     pub fn with_options(model: Arc<Model>, assets: Arc<dyn AssetSource>, options: SoftOptions) -> Self {
         let engine = SoftEngine::new(model, options);
-        Self {
+        let mut simulation = Self {
             state: engine.new_state(),
             engine,
             assets,
             renderer: None,
-        }
+        };
+        simulation.settle();
+        simulation
+    }
+
+    /// Computes the poses, sensors and contacts of a state that has just begun, which a picture may show before the first step.
+    fn settle(&mut self) {
+        // an error is that of the first step, too, which returns it
+        let _ = self.engine.forward(&mut self.state);
     }
 
     /// Returns the engine, for what it computes on request: [`full_m`](crate::physics::Engine::full_m),
@@ -202,6 +217,7 @@ impl Simulation {
     #[doc(alias = "mj_resetData")]
     pub fn reset(&mut self) {
         self.state = self.engine.new_state();
+        self.settle();
     }
 
     /// Starts anew at a keyframe.
@@ -213,7 +229,9 @@ impl Simulation {
         let key = self.model().key(keyframe);
         let names = |model: &Model| model.keys.iter().map(|key| key.name.clone()).collect();
         let key = key.ok_or_else(|| unknown("keyframe", keyframe, names(self.model())))?;
-        Ok(self.engine.reset_to_keyframe(&mut self.state, key)?)
+        self.engine.reset_to_keyframe(&mut self.state, key)?;
+        self.settle();
+        Ok(())
     }
 
     /// Returns the reading of a sensor at the start of the last step, or at the last [`forward`](Self::forward).

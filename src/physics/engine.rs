@@ -48,10 +48,8 @@ use crate::topology::Topology;
 ///             state.qpos[i] += h * state.qvel[i];
 ///         }
 ///         state.time += h;
+///         state.step += 1;
 ///         Ok(())
-///     }
-///     fn set_probe(&mut self, probe: Option<Probe>) {
-///         self.inner.set_probe(probe);
 ///     }
 /// }
 ///
@@ -154,8 +152,11 @@ pub trait Engine: Send + Sync {
     #[doc(alias = "mj_step")]
     fn step(&mut self, state: &mut State) -> Result<(), EngineError>;
 
-    /// Installs or removes a probe, which is called when each stage of a step begins and when the step is done.
-    fn set_probe(&mut self, probe: Option<Probe>);
+    /// Installs or removes a probe, which is called when each stage of a step begins and when the step is done. An engine without stages
+    /// need not have one: by default nothing is called.
+    fn set_probe(&mut self, probe: Option<Probe>) {
+        drop(probe);
+    }
 }
 
 /// A part of the work of a physics step.
