@@ -63,6 +63,7 @@ export const sidebar = [
         gpu: "Pictures on a GPU",
         endurance: "Endurance",
         "crash-safety": "Crash safety",
+        history: "Figures over time",
       }),
     ],
   },
