@@ -15,7 +15,7 @@ turned and moved to look into the room (crib: at the rails). Arrays:
 Pictures have row 0 at the top. So that they compress, each stores the difference to the pixel on the left, modulo 256.
 With --time nothing is written: of the first states in DIR, the CPU time of drawing is printed, a line for each: scene, number
 of the state, `eyes` (both) or `corner`, ms. `conformance speed --pictures yes` lays ours beside it.
-Of data/glass.xml (transparent things), data/lamps.xml (lit planes), data/meshes.xml (meshes, by mesh_room.py), data/skins.xml (skins, by skin_room.py) and data/strings.xml
+Of data/flexes.xml (flexes, by flex_room.py), data/glass.xml (transparent things), data/lamps.xml (lit planes), data/meshes.xml (meshes, by mesh_room.py), data/skins.xml (skins, by skin_room.py) and data/strings.xml
 (tendons), render_glass.npz and so
 on have the views of all cameras; with --only small nothing else is written:
 
@@ -39,7 +39,7 @@ from check_assets import GROUPS, POSES, compile_model
 STATES = 24
 TIMED = 8
 VERSION = {"base": 1, "crib": 1, "cubes": 2}
-SMALL = ["glass", "lamps", "meshes", "skins", "strings"]
+SMALL = ["flexes", "glass", "lamps", "meshes", "skins", "strings"]
 VIEWS = [("corner", 0), ("top", 3), ("side1", 1), ("side2", 2), ("closeup", 0), ("eye_left", 1)]
 
 

@@ -366,6 +366,15 @@ impl PhysicsData {
         Ok(dict)
     }
 
+    /// Returns the places of the vertices of flexes, and the lengths and rates of their edges.
+    fn flexes<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let (guard, dict) = (self.guard()?, PyDict::new(py));
+        dict.set_item("flexvert_xpos", guard.state.flexvert_xpos[..].to_array(py)?)?;
+        dict.set_item("flexedge_length", PyArray1::from_slice(py, &guard.state.flexedge_length))?;
+        dict.set_item("flexedge_velocity", PyArray1::from_slice(py, &guard.state.flexedge_velocity))?;
+        Ok(dict)
+    }
+
     /// Returns the Jacobian of the constraints in full, (nefc, nv).
     fn jacobian<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let guard = self.guard()?;
@@ -495,6 +504,7 @@ impl PhysicsRenderer {
             xpos: vectors("xpos"),
             xmat: matrices("xmat"),
             subtree_com: vectors("subtree_com"),
+            flexvert_xpos: &state.flexvert_xpos,
         };
         // waiting for another thread here, with Python's lock held, could last for ever
         let mut guard_of_renderer = self.renderer.try_lock().map_err(|_| {

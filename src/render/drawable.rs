@@ -1,4 +1,4 @@
-//! Visible geoms, sites, tendons and skins: shape, size, colour.
+//! Visible geoms, sites, tendons, flexes and skins: shape, size, colour.
 
 use crate::lattice::Lattice;
 use crate::math::{MAT3_ID, Mat3, Vec3, dot, sub};
@@ -28,6 +28,15 @@ pub enum Element {
         /// The piece, from the first on; how many there are changes as the tendon touches geoms and leaves them.
         piece: usize,
     },
+    /// An edge of a flex of lines.
+    FlexEdge {
+        /// The flex, by id.
+        flex: usize,
+        /// The edge in the flex.
+        edge: usize,
+    },
+    /// A flex of triangles or tetrahedra, by id, or a part of a large one.
+    Flex(usize),
     /// A skin, by id, or a part of a large one.
     Skin(usize),
 }
@@ -45,7 +54,7 @@ pub enum Shape {
     Cylinder,
     /// A box: [`Mesh::cube`](crate::Mesh::cube).
     Box,
-    /// A mesh, a height field or a skin of the model, or a part of a large one.
+    /// A mesh, a height field, a flex or a skin of the model, or a part of a large one.
     Mesh,
 }
 
@@ -54,17 +63,17 @@ impl Shape {
     pub const ALL: [Self; 5] = [Self::Plane, Self::Sphere, Self::Capsule, Self::Cylinder, Self::Box];
 }
 
-/// A visible geom, site or skin, or a piece of a tendon.
+/// A visible geom, site, flex or skin, or a piece of a tendon or flex.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Drawable {
     /// Element of the model.
     pub element: Element,
     /// Shape.
     pub shape: Shape,
-    /// Index into [`Scenery::meshes`](crate::Scenery::meshes), after which the parts of all skins are counted.
+    /// Index into [`Scenery::meshes`](crate::Scenery::meshes), after which the parts of all flexes and skins are counted.
     pub mesh: usize,
     /// Scale of the unit shape as the model has it, m; 1 for meshes of the model; a capsule's is radius, radius, half length, which is 1
-    /// for a piece of a tendon. Images follow [`Drawable::placed`].
+    /// for a piece of a tendon and an edge of a flex. Images follow [`Drawable::placed`].
     pub size: [f32; 3],
     /// Radius of the bounding sphere around its origin, m.
     pub radius: f32,
@@ -89,6 +98,8 @@ pub struct Drawable {
     measured: Vec3,
     /// The upward direction times the length of a tendon that hangs loose; zeros for everything else, m.
     pub(super) rope: Vec3,
+    /// Vertices of an edge of a flex, among those of all flexes; zeros for everything else.
+    pub(super) ends: [usize; 2],
     /// Half of each side that has no end, m.
     far: [f32; 2],
     /// Whether the texture keeps its scale when the size changes.
@@ -101,6 +112,7 @@ pub(super) fn material(model: &Model, element: Element) -> Option<usize> {
         Element::Geom(g) => model.geom_matid[g],
         Element::Site(s) => model.site_matid[s],
         Element::Tendon { tendon, .. } => model.tendon_matid[tendon],
+        Element::FlexEdge { flex, .. } | Element::Flex(flex) => model.flexes[flex].material,
         Element::Skin(skin) => model.skins[skin].material,
     }
 }
@@ -134,6 +146,11 @@ impl Drawable {
                 let size = [model.tendon_width[tendon], 1.0, 0.0];
                 (GeomType::Capsule, size, model.tendon_rgba[tendon])
             }
+            Element::FlexEdge { flex, .. } => {
+                let flex = &model.flexes[flex];
+                (GeomType::Cylinder, [flex.radius, 1.0, 0.0], flex.rgba)
+            }
+            Element::Flex(flex) => (GeomType::Mesh, Skin::SIZE, model.flexes[flex].rgba),
             Element::Skin(skin) => (GeomType::Mesh, Skin::SIZE, model.skins[skin].rgba),
         };
         let far = [far; 2];
@@ -156,6 +173,7 @@ impl Drawable {
             kind,
             measured: size,
             rope: [0.0; 3],
+            ends: [0; 2],
             far,
             texuniform: false,
         };
@@ -164,10 +182,14 @@ impl Drawable {
         {
             drawable.radius = model.geom_rbound[g] as f32;
         }
-        if let Element::Skin(_) = element {
+        if let Element::Flex(_) | Element::Skin(_) = element {
             // its vertices are in the world: bands are culled by their boxes
             drawable.radius = f32::INFINITY;
             drawable.size = [1.0; 3];
+        }
+        if let Element::FlexEdge { flex, edge } = element {
+            let flex = &model.flexes[flex];
+            drawable.ends = flex.edge[edge].map(|v| flex.vertadr + v);
         }
         if let Some(m) = material(model, element).map(|m| &model.materials[m]) {
             if drawable.rgba == DEFAULT_RGBA {
@@ -200,7 +222,8 @@ impl Drawable {
             }
             Element::Site(s) => Some((*self, poses.site_xpos[s], poses.site_xmat[s])),
             Element::Tendon { tendon, piece } => self.strung(poses, tendon, piece),
-            Element::Skin(_) => Some((*self, [0.0; 3], MAT3_ID)),
+            Element::FlexEdge { .. } => self.stretched(poses),
+            Element::Flex(_) | Element::Skin(_) => Some((*self, [0.0; 3], MAT3_ID)),
         }
     }
 
@@ -259,7 +282,7 @@ impl Drawable {
         };
         let m = &model.materials[m];
         let scale = match (self.shape, m.texuniform) {
-            _ if matches!(self.element, Element::Skin(_)) => {
+            _ if matches!(self.element, Element::Flex(_) | Element::Skin(_)) => {
                 if m.texuniform {
                     single(self.measured)
                 } else {

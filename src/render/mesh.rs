@@ -275,6 +275,14 @@ impl Mesh {
         }
     }
 
+    /// Creates a cylinder without ends.
+    pub(super) fn pipe() -> Self {
+        let mut m = Self::default();
+        m.open_cylinder();
+        m.fill();
+        m
+    }
+
     fn disk(&mut self, sign: f32) {
         let rings = STACKS / 2;
         let up = sign > 0.0;
@@ -427,6 +435,7 @@ mod tests {
         check(&Mesh::capsule(), 1736);
         check(&Mesh::cylinder(), 1736);
         check(&Mesh::cube(), 192);
+        check(&Mesh::pipe(), 560);
         check(&Mesh::plane(), 2);
         check(&crate::lattice::Lattice::new([1.0, 2.0, 0.25], 100.0, None).mesh(), 64);
     }

@@ -34,6 +34,7 @@
 
 mod cpu;
 mod drawable;
+mod flex;
 #[cfg(feature = "wgpu")]
 pub mod gpu;
 #[cfg_attr(all(feature = "wgpu", not(target_arch = "wasm32")), path = "native_gpu.rs")]

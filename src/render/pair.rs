@@ -231,6 +231,7 @@ struct PosesBuffer {
     xpos: Vec<Vec3>,
     xmat: Vec<Mat3>,
     subtree_com: Vec<Vec3>,
+    flexvert_xpos: Vec<Vec3>,
 }
 
 impl PosesBuffer {
@@ -254,6 +255,7 @@ impl PosesBuffer {
         copy(&mut self.xpos, poses.xpos);
         copy(&mut self.xmat, poses.xmat);
         copy(&mut self.subtree_com, poses.subtree_com);
+        copy(&mut self.flexvert_xpos, poses.flexvert_xpos);
     }
 
     fn lend(&self) -> Poses<'_> {
@@ -273,6 +275,7 @@ impl PosesBuffer {
             xpos: &self.xpos,
             xmat: &self.xmat,
             subtree_com: &self.subtree_com,
+            flexvert_xpos: &self.flexvert_xpos,
         }
     }
 }

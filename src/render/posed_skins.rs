@@ -1,4 +1,4 @@
-//! Skins in given poses, computed anew for every picture.
+//! Skins and flexes in given poses, computed anew for every picture.
 
 use super::drawable::Drawable;
 use super::mesh::Mesh;
@@ -6,21 +6,22 @@ use super::scenery::Scenery;
 use super::skin::{SkinLook, SkinPart};
 use super::strip::LANES;
 use super::view::Poses;
-use crate::math::{mat_mul, mat_vec, sub};
+use crate::math::{Vec3, mat_mul, mat_vec, sub};
 
-/// The skins of a scene in given poses. Its buffers are reused from one picture to the next.
+/// The skins and flexes of a scene in given poses. Its buffers are reused from one picture to the next.
 #[derive(Clone, Debug, Default)]
 pub struct PosedSkins {
-    /// The meshes of all skins, in the order of the scenery.
+    /// The meshes of all flexes and skins, in the order of the scenery.
     meshes: Vec<Mesh>,
+    smooth: Vec<Vec3>,
     place: Vec<[f32; 3]>,
     normal: Vec<[f32; 3]>,
 }
 
 impl PosedSkins {
-    /// Moves all skins.
+    /// Moves all flexes and skins.
     pub fn update(&mut self, scenery: &Scenery, poses: &Poses) {
-        let parts = || scenery.skins.iter().flat_map(|skin| &skin.parts);
+        let parts = || scenery.soft_parts();
         // a renderer may be given another scenery for the next picture
         let same = |(mesh, part): (&Mesh, &SkinPart)| {
             mesh.x.len() == part.mesh.x.len()
@@ -31,6 +32,12 @@ impl PosedSkins {
             self.meshes = parts().map(|part| part.mesh.clone()).collect();
         }
         let mut meshes = self.meshes.iter_mut();
+        for flex in &scenery.flexes {
+            flex.place(poses, &mut self.smooth, (&mut self.place, &mut self.normal));
+            for (part, mesh) in flex.parts.iter().zip(&mut meshes) {
+                dress(part, mesh, &self.place, &self.normal, 0.0);
+            }
+        }
         for skin in &scenery.skins {
             place(skin, poses, &mut self.place);
             normals(skin, &self.place, &mut self.normal);
@@ -40,7 +47,7 @@ impl PosedSkins {
         }
     }
 
-    /// Returns the mesh of a drawable, which is that of a skin or one of the scenery.
+    /// Returns the mesh of a drawable, which is that of a flex or skin or one of the scenery.
     #[inline(always)]
     pub fn mesh<'a>(&'a self, scenery: &'a Scenery, drawable: &Drawable) -> &'a Mesh {
         match drawable.mesh.checked_sub(scenery.meshes.len()) {
@@ -49,7 +56,7 @@ impl PosedSkins {
         }
     }
 
-    /// Returns the meshes of all skins, in the order of their drawables.
+    /// Returns the meshes of all flexes and skins, in the order of their drawables.
     pub fn meshes(&self) -> &[Mesh] {
         &self.meshes
     }

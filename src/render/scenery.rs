@@ -5,17 +5,18 @@ use std::sync::Arc;
 use crate::RenderError;
 use crate::assets::AssetSource;
 use crate::drawable::{Drawable, Element, OPAQUE, Shape, material};
+use crate::flex::FlexLook;
 use crate::math::{Vec3, order, unit};
 use crate::mesh::Mesh;
 use crate::model::{CamLight, Model, TextureType};
 use crate::model_mesh::ModelMeshes;
 use crate::single::single;
-use crate::skin::SkinLook;
+use crate::skin::{SkinLook, SkinPart};
 use crate::tendon::{pieces, ropes};
 use crate::texture::{TextureLoader, TexturePixels};
 use crate::view::{Poses, View};
 
-/// Groups of geoms, sites, tendons and skins that are visible.
+/// Groups of geoms, sites, tendons, flexes and skins that are visible.
 const VISIBLE_GROUPS: std::ops::RangeTo<i32> = ..3;
 /// Number of lights that fixed-function OpenGL guarantees.
 const MAX_LIGHTS: usize = 8;
@@ -110,10 +111,12 @@ impl Camera {
 #[doc(alias = "mjvScene")]
 #[derive(Clone, Debug)]
 pub struct Scenery {
-    /// Visible geoms, sites and tendons, in the order of the model, then the parts of skins.
+    /// Visible geoms, sites, tendons and edges of flexes of lines, in the order of the model, then the parts of other flexes and of skins.
     pub drawables: Vec<Drawable>,
     /// Meshes: those of [`Shape::ALL`](crate::Shape::ALL) in its order, then those of the model that are visible.
     pub meshes: Vec<Mesh>,
+    /// Flexes of triangles and tetrahedra that are visible.
+    pub(super) flexes: Vec<FlexLook>,
     /// Skins that are visible.
     pub(super) skins: Vec<SkinLook>,
     /// Textures in use.
@@ -132,8 +135,8 @@ pub struct Scenery {
     pub near: f64,
     /// Distance of the far plane, m.
     pub far: f64,
-    /// Numbers of geoms, sites, bodies, tendons and points of tendons that poses must have.
-    sizes: [usize; 5],
+    /// Numbers of geoms, sites, bodies, tendons, points of tendons and vertices of flexes that poses must have.
+    sizes: [usize; 6],
 }
 
 impl Scenery {
@@ -169,8 +172,11 @@ impl Scenery {
             Mesh::cylinder(),
             Mesh::cube(),
         ];
-        let mut skins = Vec::new();
-        let mut drawables = drawables(model, far as f32, &mut used, (&mut meshes, &mut skins))?;
+        let SceneryShapes {
+            mut drawables,
+            flexes,
+            skins,
+        } = drawables(model, far as f32, &mut used, &mut meshes)?;
         let (headlight, lights) = lights(model);
         let near = lights.iter().any(|light| light.pos.is_some());
         let shines = headlight.is_some_and(|[.., specular]| specular != [0.0; 3])
@@ -189,6 +195,7 @@ impl Scenery {
         let textures = used.textures;
         for drawable in &mut drawables {
             let explicit = match drawable.element {
+                Element::Flex(flex) => !model.flexes[flex].texcoord.is_empty(),
                 Element::Skin(skin) => !model.skins[skin].texcoord.is_empty(),
                 _ => !meshes[drawable.mesh].texcoord.is_empty(),
             };
@@ -202,6 +209,7 @@ impl Scenery {
         Ok(Self {
             drawables,
             meshes,
+            flexes,
             skins,
             textures,
             sky,
@@ -219,14 +227,22 @@ impl Scenery {
                 model.nbody(),
                 model.ntendon(),
                 2 * model.nwrap(),
+                model.nflexvert(),
             ],
         })
     }
 
-    /// Returns the mesh of a drawable; that of a skin is as the model has it, and has no normals: [`PosedSkins`](crate::PosedSkins) has those of a moment.
+    /// Returns the mesh of a drawable; that of a flex or skin is as the model has it, and has no normals: [`PosedSkins`](crate::PosedSkins)
+    /// has those of a moment.
     pub fn mesh_of(&self, drawable: &Drawable) -> Option<&Mesh> {
-        let worn = self.skins.iter().flat_map(SkinLook::meshes);
-        self.meshes.iter().chain(worn).nth(drawable.mesh)
+        let soft = self.soft_parts().map(|part| &part.mesh);
+        self.meshes.iter().chain(soft).nth(drawable.mesh)
+    }
+
+    /// Returns the parts of flexes and skins, whose meshes change with the poses.
+    pub(super) fn soft_parts(&self) -> impl Iterator<Item = &SkinPart> {
+        let flexes = self.flexes.iter().flat_map(|flex| &flex.parts);
+        flexes.chain(self.skins.iter().flat_map(|skin| &skin.parts))
     }
 
     /// Returns the vertical field of view of a camera, degrees.
@@ -276,7 +292,8 @@ impl Scenery {
             return Err(RenderError::Orthographic { camera });
         }
         view.check()?;
-        let [geoms, sites, bodies, tendons, points] = self.sizes;
+        let [geoms, sites, bodies, tendons, points, vertices] = self.sizes;
+        let flexes = poses.flexvert_xpos.len();
         for (what, positions, matrices, expected) in [
             ("geoms", poses.geom_xpos.len(), poses.geom_xmat.len(), geoms),
             ("geoms", poses.geom_size.len(), poses.geom_size.len(), geoms),
@@ -289,6 +306,7 @@ impl Scenery {
             ),
             ("tendons", poses.ten_wrapadr.len(), poses.ten_wrapnum.len(), tendons),
             ("points of tendons", poses.wrap_xpos.len(), poses.wrap_obj.len(), points),
+            ("vertices of flexes", flexes, flexes, vertices),
             ("bodies", poses.xpos.len(), poses.xmat.len(), bodies),
             ("bodies", poses.subtree_com.len(), poses.subtree_com.len(), bodies),
         ] {
@@ -301,15 +319,22 @@ impl Scenery {
     }
 }
 
+/// The visible drawables of a model, and those among them whose meshes change with the poses.
+struct SceneryShapes {
+    drawables: Vec<Drawable>,
+    flexes: Vec<FlexLook>,
+    skins: Vec<SkinLook>,
+}
+
 /// Makes the visible drawables, except for the placement of their textures, and adds the meshes of the model to `meshes`.
 fn drawables(
     model: &Model,
     far: f32,
     used: &mut UsedTextures,
-    (meshes, skins): (&mut Vec<Mesh>, &mut Vec<SkinLook>),
-) -> Result<Vec<Drawable>, RenderError> {
+    meshes: &mut Vec<Mesh>,
+) -> Result<SceneryShapes, RenderError> {
     let (ropes, mut model_meshes) = (ropes(model), ModelMeshes::new(model));
-    let (mut drawables, mut worn) = (Vec::new(), Vec::new());
+    let (mut drawables, mut soft, mut pipe) = (Vec::new(), Vec::new(), None);
     for element in visible(model, &ropes) {
         let mut drawable = Drawable::new(model, element, far);
         if drawable.rgba[3] <= 0.0 {
@@ -318,14 +343,27 @@ fn drawables(
         if let Element::Tendon { tendon, .. } = element {
             drawable.rope = ropes[tendon];
         }
-        if let Some(texture) = material(model, element).and_then(|m| model.materials[m].texture) {
+        // as in MuJoCo, flexes without texture coordinates have no texture
+        let plain = match element {
+            Element::FlexEdge { .. } => true,
+            Element::Flex(flex) => model.flexes[flex].texcoord.is_empty(),
+            _ => false,
+        };
+        let texture = material(model, element).and_then(|m| model.materials[m].texture);
+        if let Some(texture) = texture.filter(|_| !plain) {
             drawable.texture = used.texture(texture)?;
             if drawable.rgba[3] < OPAQUE || drawable.shape == Shape::Plane {
                 used.blended(texture)?;
             }
         }
-        if let Element::Skin(skin) = element {
-            worn.push((drawable, skin));
+        if let Element::FlexEdge { .. } = element {
+            let mesh = *pipe.get_or_insert_with(|| {
+                meshes.push(Mesh::pipe());
+                meshes.len() - 1
+            });
+            drawables.push(drawable.showing(mesh));
+        } else if let Element::Flex(_) | Element::Skin(_) = element {
+            soft.push(drawable);
         } else if drawable.shape == Shape::Mesh {
             let parts = model_meshes.parts(model, element, meshes);
             drawables.extend(parts.map(|mesh| drawable.showing(mesh)));
@@ -335,13 +373,27 @@ fn drawables(
     }
     // behind all other meshes, whose number is known now
     let mut mesh = meshes.len();
-    for (drawable, skin) in worn {
-        let look = SkinLook::new(&model.skins[skin]);
-        drawables.extend((mesh..mesh + look.count()).map(|mesh| drawable.showing(mesh)));
-        mesh += look.count();
-        skins.push(look);
+    let (mut flexes, mut skins) = (Vec::new(), Vec::new());
+    for drawable in soft {
+        let count = match drawable.element {
+            Element::Flex(flex) => {
+                flexes.push(FlexLook::new(&model.flexes[flex]));
+                flexes.last().map_or(0, |look| look.parts.len())
+            }
+            Element::Skin(skin) => {
+                skins.push(SkinLook::new(&model.skins[skin]));
+                skins.last().map_or(0, |look| look.parts.len())
+            }
+            _ => 0,
+        };
+        drawables.extend((mesh..mesh + count).map(|mesh| drawable.showing(mesh)));
+        mesh += count;
     }
-    Ok(drawables)
+    Ok(SceneryShapes {
+        drawables,
+        flexes,
+        skins,
+    })
 }
 
 /// Lists the elements of visible groups, in the order in which MuJoCo draws them.
@@ -352,7 +404,16 @@ fn visible<'a>(model: &'a Model, ropes: &'a [Vec3]) -> impl Iterator<Item = Elem
     let tendons = tendons.flat_map(move |tendon| pieces(model, tendon, ropes[tendon]));
     let skins = (0..model.nskin()).filter(|&s| VISIBLE_GROUPS.contains(&model.skins[s].group));
     let parts = geoms.map(Element::Geom).chain(sites.map(Element::Site)).chain(tendons);
-    parts.chain(skins.map(Element::Skin))
+    parts.chain(flexes(model)).chain(skins.map(Element::Skin))
+}
+
+/// Lists the visible flexes: the edges of those of lines, which without a radius are not drawn, before all others.
+fn flexes(model: &Model) -> impl Iterator<Item = Element> + '_ {
+    let visible = || (0..model.nflex()).filter(|&f| VISIBLE_GROUPS.contains(&model.flexes[f].group));
+    let lines = visible().filter(|&f| model.flexes[f].dim == 1 && model.flexes[f].radius > 0.0);
+    let edges =
+        lines.flat_map(|flex| (0..model.flexes[flex].edge.len()).map(move |edge| Element::FlexEdge { flex, edge }));
+    edges.chain(visible().filter(|&f| model.flexes[f].dim > 1).map(Element::Flex))
 }
 
 impl LightAim {

@@ -25,12 +25,12 @@ pub struct Bone {
     pub pulls: Vec<(u32, f64)>,
 }
 
-/// A subset of a skin's faces, small enough for vertex indices of 16 bits.
+/// A subset of the faces of a skin or flex, small enough for vertex indices of 16 bits.
 #[derive(Clone, Debug)]
 pub struct SkinPart {
     /// Triangles and texture coordinates.
     pub mesh: Mesh,
-    /// The vertex of the skin that each vertex of the mesh is.
+    /// The vertex of the skin or flex that each vertex of the mesh is.
     pub vertex: Vec<u32>,
 }
 
@@ -52,27 +52,17 @@ impl SkinLook {
             vert: skin.vert.iter().map(|v| v.map(f64::from)).collect(),
             face: skin.face.clone(),
             inflate: skin.inflate,
-            parts: parts(skin),
+            parts: parts(&skin.vert, &skin.face, &skin.texcoord),
         }
-    }
-
-    /// Returns the number of meshes that it is cut into.
-    pub fn count(&self) -> usize {
-        self.parts.len()
-    }
-
-    /// Returns these meshes where nothing has moved, for their triangles.
-    pub fn meshes(&self) -> impl Iterator<Item = &Mesh> {
-        self.parts.iter().map(|part| &part.mesh)
     }
 }
 
-fn parts(skin: &model::Skin) -> Vec<SkinPart> {
+/// Cuts faces into parts. Vertices without texture coordinates have none at all.
+pub fn parts(vert: &[[f32; 3]], mut faces: &[[u32; 3]], texcoord: &[[f32; 2]]) -> Vec<SkinPart> {
     let mut parts = Vec::new();
-    let mut faces = &skin.face[..];
     while !faces.is_empty() {
         let (mut mesh, mut vertex) = (Mesh::default(), Vec::new());
-        let mut known = vec![u16::MAX; skin.vert.len()]; // the place of each vertex in this part
+        let mut known = vec![u16::MAX; vert.len()]; // the place of each vertex in this part
         mesh.band(MeshPart::Body);
         let mut count = 0;
         for face in faces {
@@ -83,8 +73,8 @@ fn parts(skin: &model::Skin) -> Vec<SkinPart> {
                 let place = &mut known[v as usize];
                 if *place == u16::MAX {
                     *place = mesh.x.len() as u16;
-                    mesh.push((skin.vert[v as usize], [0.0; 3]));
-                    mesh.texcoord.extend(skin.texcoord.get(v as usize));
+                    mesh.push((vert[v as usize], [0.0; 3]));
+                    mesh.texcoord.extend(texcoord.get(v as usize));
                     vertex.push(v);
                 }
                 *place

@@ -92,7 +92,7 @@ impl Drawable {
 }
 
 /// Returns the shortest rotation that takes z to a direction.
-fn along([x, y, z]: Vec3) -> Mat3 {
+pub(super) fn along([x, y, z]: Vec3) -> Mat3 {
     let across = x * x + y * y;
     if z < 0.0 && across < MINVAL * MINVAL {
         return [1.0, 0.0, 0.0, 0.0, -1.0, 0.0, 0.0, 0.0, -1.0];

@@ -141,6 +141,8 @@ pub struct Poses<'a> {
     pub xmat: &'a [Mat3],
     /// Centres of mass of the bodies with those below them, which some lights follow.
     pub subtree_com: &'a [Vec3],
+    /// Positions of the vertices of flexes.
+    pub flexvert_xpos: &'a [Vec3],
 }
 
 impl<'a> From<&'a State> for Poses<'a> {
@@ -162,6 +164,7 @@ impl<'a> From<&'a State> for Poses<'a> {
             xpos: &s.xpos,
             xmat: &s.xmat,
             subtree_com: &s.subtree_com,
+            flexvert_xpos: &s.flexvert_xpos,
         }
     }
 }

@@ -1,5 +1,5 @@
 //! Pictures against MuJoCo 3.3.0's own renderer (OSMesa): of the embedded assets from `data/render_*.npz`, which
-//! `scripts/render_goldens.py` writes and describes, of `data/glass.xml`, `lamps.xml`, `meshes.xml`, `skins.xml` and `strings.xml`, and of the original
+//! `scripts/render_goldens.py` writes and describes, of `data/flexes.xml`, `glass.xml`, `lamps.xml`, `meshes.xml`, `skins.xml` and `strings.xml`, and of the original
 //! files from the recordings.
 
 use babybench::assets::{AssetSource, DirAssets, MemoryAssets};
@@ -26,6 +26,7 @@ pub fn trials() -> Vec<Trial> {
             lit_planes_look_as_mujoco_draws_them,
             meshes_look_as_mujoco_draws_them,
             skins_look_as_mujoco_draws_them,
+            flexes_look_as_mujoco_draws_them,
             tendons_look_as_mujoco_draws_them
         ],
         trials![needs KIT: recorded_eyes_with_the_original_files],
@@ -140,6 +141,12 @@ fn meshes_look_as_mujoco_draws_them() {
 fn skins_look_as_mujoco_draws_them() {
     // when written: mean up to 0.034; no pixel off by more than 2
     small_scene("skins", 0.05, 0.1);
+}
+
+/// Ropes, sheets and solids, smooth and flat, with images and without.
+fn flexes_look_as_mujoco_draws_them() {
+    // when written: mean up to 0.040; no pixel off by more than 2
+    small_scene("flexes", 0.05, 0.1);
 }
 
 /// Tendons over and within geoms, by pulleys, straight and hanging.

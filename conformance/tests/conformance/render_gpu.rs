@@ -130,6 +130,7 @@ fn eyes_and_room_cameras_show_what_mujoco_draws() {
 
 fn small_scenes_are_what_mujoco_draws() {
     for (name, mean) in [
+        ("flexes", 0.05),
         ("glass", 0.4),
         ("lamps", 0.4),
         ("meshes", 0.05),

@@ -102,7 +102,8 @@ impl CpuRenderer {
         if let Some(out) = segmentation {
             frame.elements(out, |index| match scenery.drawables[index].element {
                 Element::Geom(geom) => geom as i32,
-                Element::Site(_) | Element::Tendon { .. } | Element::Skin(_) => -1,
+                Element::Site(_) | Element::Tendon { .. } => -1,
+                Element::FlexEdge { .. } | Element::Flex(_) | Element::Skin(_) => -1,
             });
         }
         if targets.colour {

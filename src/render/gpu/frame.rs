@@ -128,11 +128,11 @@ impl SubmissionData {
         }
     }
 
-    /// Moves the skins, for each view as its poses have them.
+    /// Moves the flexes and skins, for each view as its poses have them.
     fn wear(&mut self, r: &Submission) {
         self.worn_vertices.clear();
         self.worn_starts.clear();
-        if r.scenery.skins.is_empty() {
+        if r.scenery.soft_parts().next().is_none() {
             return;
         }
         for request in r.requests {
@@ -319,7 +319,8 @@ fn instance(r: &Submission, eye: &ViewCamera, view: usize, drawable: &Drawable, 
     }
     let id = match drawable.element {
         Element::Geom(g) => (g + 1) as f32,
-        Element::Site(_) | Element::Tendon { .. } | Element::Skin(_) => 0.0,
+        Element::Site(_) | Element::Tendon { .. } => 0.0,
+        Element::FlexEdge { .. } | Element::Flex(_) | Element::Skin(_) => 0.0,
     };
     let [u, v, s] = drawable.texture_scale;
     let (pos, m) = (single(pos), mat.map(|v| v as f32));

@@ -10,7 +10,6 @@ use super::pipelines::{ColourSource, Layouts};
 use crate::drawable::{Drawable, Shape};
 use crate::mesh::{Mesh, MeshPart};
 use crate::scenery::Scenery;
-use crate::skin::SkinLook;
 use crate::texture::{MipChain, MipLevel, TexturePixels};
 
 /// Number of lights in the shader.
@@ -51,7 +50,7 @@ impl GpuScene {
             ranges,
             grids,
         } = geometry(scenery);
-        let worn: usize = scenery.skins.iter().map(SkinLook::count).sum();
+        let worn = scenery.soft_parts().count();
         let flipped = scenery.meshes.len() + worn;
         let buffer = |label, contents: &[u8], usage| {
             let label = Some(label);
@@ -151,14 +150,14 @@ fn geometry(scenery: &Scenery) -> Geometry {
         add_vertices(mesh, &mut vertices);
         first += mesh.x.len() as u32;
     }
-    for mesh in scenery.skins.iter().flat_map(SkinLook::meshes) {
-        add(mesh, 0, false);
+    for part in scenery.soft_parts() {
+        add(&part.mesh, 0, false);
     }
     let plane = &scenery.meshes[Shape::Plane as usize];
     add(plane, first, true);
     add_vertices(plane, &mut vertices);
     first += plane.x.len() as u32;
-    let mut next = scenery.meshes.len() + scenery.skins.iter().map(SkinLook::count).sum::<usize>() + 1;
+    let mut next = scenery.meshes.len() + scenery.soft_parts().count() + 1;
     let mut grids = vec![None; scenery.drawables.len()];
     for (drawable, grid) in scenery.drawables.iter().zip(&mut grids) {
         let Some(lattice) = &drawable.lattice else { continue };

@@ -117,6 +117,7 @@ fn drawable(m: &Model, v: &Scenery, d: &Drawable) -> JsValue {
         Element::Geom(g) => (Some(g), m.geom_bodyid[g], &m.geom_name[g]),
         Element::Site(s) => (None, m.site_bodyid[s], &m.site_name[s]),
         Element::Tendon { tendon, .. } => (None, 0, &m.tendon_name[tendon]),
+        Element::FlexEdge { flex, .. } | Element::Flex(flex) => (None, 0, &m.flexes[flex].name),
         Element::Skin(skin) => (None, 0, &m.skins[skin].name),
     };
     let shape = match d.shape {
@@ -136,7 +137,7 @@ fn drawable(m: &Model, v: &Scenery, d: &Drawable) -> JsValue {
         ("body", id(body)),
         ("shape", shape.into()),
         ("mesh", optional(own, |own| mesh(d.mesh, own))),
-        ("worn", matches!(d.element, Element::Skin(_)).into()),
+        ("worn", matches!(d.element, Element::Flex(_) | Element::Skin(_)).into()),
         ("size", numbers(&d.size)),
         ("rgba", numbers(&d.rgba)),
         ("emission", d.emission.into()),
