@@ -337,7 +337,7 @@ class Env:
     def touch_contacts(self) -> dict[str, _Array]:
         """Returns the contacts with skin, an entry for each side with sensors.
 
-        Entries: ``contact`` (index in :meth:`contacts`), ``body``, ``geom``, ``other`` (geom), ``normal`` (N), ``force``
+        Entries: ``contact`` (index in :meth:`contacts`), ``body``, ``geom``, ``other`` (geom, -1 for a flex), ``normal`` (N), ``force``
         and ``point`` (world, N and m), ``force_body`` and ``point_body`` (frame of the body).
         """
     @property
@@ -494,7 +494,7 @@ class PhysicsModel:
     def extras(self) -> dict[str, Any]:
         """Returns MuJoCo's arrays of what the engine keeps in another form."""
     def shapes(self) -> dict[str, _Array]:
-        """Returns the arrays of meshes, height fields and skins under MuJoCo's names."""
+        """Returns the arrays of meshes, height fields, skins and flexes under MuJoCo's names."""
 
 @final
 class PhysicsData:
@@ -516,6 +516,8 @@ class PhysicsData:
         """Names, groups and shapes of the arrays in :attr:`memory`, in order."""
     def reset(self, key: int | None = None) -> None:
         """Resets, to a keyframe if given."""
+    def flexes(self) -> dict[str, _Floats]:
+        """Returns the places of the vertices of flexes, and the lengths and rates of their edges."""
     def step(self, count: int) -> None:
         """Advances by some time steps."""
     def ray(

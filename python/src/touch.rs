@@ -62,6 +62,9 @@ pub fn contacts<'py>(py: Python<'py>, touch: &Touch) -> PyResult<Bound<'py, PyDi
             )*
         };
     }
-    columns!(ids: contact body geom other; numbers: force force_body point point_body);
+    // -1 for flexes
+    let others = contacts.iter().map(|c| c.other.geom().map_or(-1, |geom| geom as i32));
+    dict.set_item("other", PyArray1::from_iter(py, others))?;
+    columns!(ids: contact body geom; numbers: force force_body point point_body);
     Ok(dict)
 }

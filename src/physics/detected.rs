@@ -1,6 +1,7 @@
 //! Detected contacts, of geoms and of flexes.
 
 use crate::math::{Mat3, Vec3, mat_t_vec};
+use crate::model::Arrays;
 
 /// A detected contact between two geoms.
 #[doc(alias = "mjContact")]
@@ -61,6 +62,34 @@ pub enum ContactSide {
     },
 }
 
+impl ContactSide {
+    /// Returns the geom, if it is one.
+    pub fn geom(self) -> Option<usize> {
+        match self {
+            Self::Geom(geom) => Some(geom),
+            _ => None,
+        }
+    }
+
+    /// Returns the body of the geom or vertex, by id; of an element, that of its first vertex.
+    pub fn body(self, model: &Arrays) -> usize {
+        let of = |flex: usize, vertex: usize| model.flexes[flex].vertbodyid[vertex];
+        match self {
+            Self::Geom(geom) => model.geom_bodyid[geom],
+            Self::Vertex { flex, vertex } => of(flex, vertex),
+            Self::Element { flex, element } => of(flex, model.flexes[flex].element(element)[0]),
+        }
+    }
+
+    /// Returns the name of the geom's body, or of the flex.
+    pub fn name(self, model: &Arrays) -> &str {
+        match self {
+            Self::Geom(geom) => &model.body_name[model.geom_bodyid[geom]],
+            Self::Vertex { flex, .. } | Self::Element { flex, .. } => &model.flexes[flex].name,
+        }
+    }
+}
+
 /// A detected contact of which at least one side is a flex.
 #[doc(alias = "mjContact")]
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -77,9 +106,6 @@ pub struct FlexContact {
 impl FlexContact {
     /// Returns the geoms of both sides.
     pub fn geoms(&self) -> [Option<usize>; 2] {
-        self.sides.map(|side| match side {
-            ContactSide::Geom(geom) => Some(geom),
-            _ => None,
-        })
+        self.sides.map(ContactSide::geom)
     }
 }

@@ -84,7 +84,7 @@ impl Pain {
         let options = self.options;
         self.skin.clear();
         for contact in touch.contacts() {
-            let other = model.geom_bodyid[contact.other];
+            let other = contact.other.body(model);
             let factor = self.softness[other] * self.sensitivity[contact.body];
             self.skin
                 .press(contact.body, contact.point_body, [contact.normal * factor, 0.0, 0.0]);

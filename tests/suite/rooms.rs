@@ -8,6 +8,7 @@ use babybench::assets::MemoryAssets;
 use babybench::config::{ActuationModel, Behavior, Scene};
 use babybench::env::BlueprintOptions;
 use babybench::mimo::{BodyFigures, MimoJoints, joint_part};
+use babybench::physics::ContactSide;
 use babybench::runs::{read_scene, write_scene_from};
 use babybench::sensors::SkinLayout;
 use babybench::{Blueprint, Config, Env};
@@ -130,7 +131,7 @@ fn a_toy_on_the_belly_is_felt() {
     let press: f64 = touch
         .contacts()
         .iter()
-        .filter(|c| c.other == geom)
+        .filter(|c| c.other == ContactSide::Geom(geom))
         .map(|c| c.normal)
         .sum();
     assert!(press > 1.0, "the toy presses with {press} N");

@@ -126,7 +126,7 @@ impl Inspect {
         )?;
         for c in felt.map_or(&[][..], |t| t.contacts()) {
             let body = &env.model().body_name[c.body];
-            let other = &env.model().body_name[env.model().geom_bodyid[c.other]];
+            let other = c.other.name(env.model());
             writeln!(out, "  {body:20} touched by {other:20} with {:8.3} N", c.normal)?;
         }
         Ok(())

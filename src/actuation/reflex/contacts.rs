@@ -3,7 +3,7 @@
 use crate::math::{Vec3, mat_t_vec, sub};
 use crate::mimo::MimoBodies;
 use crate::model::Model;
-use crate::physics::State;
+use crate::physics::{Contact, ContactSide, State};
 
 /// Which of MIMo's bodies a reflex watches: for each geom of the scene the number of its group.
 pub(super) struct Watched {
@@ -41,25 +41,31 @@ impl Watched {
 
     /// Calls `found` for each contact of the last physics step.
     pub fn each(&self, model: &Model, state: &State, mut found: impl FnMut(&Pressed)) {
-        for contact in &state.contact {
-            let groups = contact.geom.map(|geom| self.groups[geom]);
+        let mut each = |contact: &Contact, sides: [ContactSide; 2]| {
+            let groups = sides.map(|side| side.geom().and_then(|geom| self.groups[geom]));
             if groups[0] == groups[1] {
-                continue; // neither is watched, or a part touches itself
+                return; // neither is watched, or a part touches itself
             }
             let force = contact.world_force();
             for side in 0..2 {
                 let Some(group) = groups[side] else { continue };
                 let world = if side == 0 { force.map(|v| -v) } else { force };
-                let body = model.geom_bodyid[contact.geom[side]];
+                let body = sides[side].body(model);
                 let frame = &state.xmat[body];
                 found(&Pressed {
                     group: usize::from(group),
                     force: mat_t_vec(frame, world),
                     world,
                     point: mat_t_vec(frame, sub(contact.pos, state.xpos[body])),
-                    by_himself: self.own[contact.geom[1 - side]],
+                    by_himself: sides[1 - side].geom().is_some_and(|geom| self.own[geom]),
                 });
             }
+        };
+        for contact in &state.contact {
+            each(contact, contact.geom.map(ContactSide::Geom));
+        }
+        for flex in &state.flex_contact {
+            each(&flex.contact, flex.sides);
         }
     }
 }

@@ -77,14 +77,16 @@ impl Arms {
     pub(super) fn feel(&self, env: &Env, mut each: impl FnMut(u32)) {
         let contacts = env.senses().touch().map_or(&[][..], |touch| touch.contacts());
         for contact in contacts.iter().filter(|contact| contact.felt) {
+            // a flex has no skin
+            let Some(other) = contact.other.geom() else { continue };
             let (Some(hand), Some(&Some(body))) = (
                 self.palms.iter().position(|&palm| palm == contact.body),
-                self.skinned.get(contact.other),
+                self.skinned.get(other),
             ) else {
                 continue;
             };
             if body != contact.body {
-                each((hand * self.skinned.len() + contact.other) as u32);
+                each((hand * self.skinned.len() + other) as u32);
             }
         }
     }

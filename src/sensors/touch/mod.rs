@@ -42,6 +42,7 @@ use std::sync::Arc;
 pub(crate) use contact::MIN_FORCE;
 pub use contact::TouchContact;
 pub use contact::touch_contacts;
+use contact::{TouchedBodies, touch_flexes};
 pub use hull::Hull;
 pub use layout::{MAX_SENSORS, SkinGeom};
 pub use layout::{SkinBody, SkinError, SkinLayout};
@@ -52,7 +53,7 @@ pub use values::SkinValues;
 use crate::config::{Compat, Config, TouchFunction, TouchResponse};
 use crate::math::*;
 use crate::model::Model;
-use crate::physics::{Contact, State};
+use crate::physics::{Contact, FlexContact, State};
 
 /// Reach of a force, in multiples of the sensor distance ([`TouchResponse::SpreadLinear`]).
 const REACH: f64 = 2.0;
@@ -202,18 +203,35 @@ impl Touch {
         felt.fold([0.0; 3], |sum, c| add(sum, c.force))
     }
 
-    /// Senses a state: the contacts and poses of the start of its last step.
+    /// Senses a state: the contacts of geoms and flexes, and the poses of the start of its last step.
     pub fn observe(&mut self, model: &Model, s: &State) {
-        self.sense(model, &s.contact, &s.xpos, &s.xmat);
+        self.sense_with_flexes(model, (&s.contact, &s.flex_contact), (&s.xpos, &s.xmat));
     }
 
     /// Senses `contacts`, with body poses `xpos` (m) and `xmat` of the same instant, replacing earlier values.
     ///
     /// The cost grows with the number of contacts, not of sensors; nothing is allocated after a few calls.
     pub fn sense(&mut self, model: &Model, contacts: &[Contact], xpos: &[Vec3], xmat: &[Mat3]) {
+        self.sense_with_flexes(model, (contacts, &[]), (xpos, xmat));
+    }
+
+    /// Senses contacts of geoms and of flexes, as [`Touch::sense`] does.
+    pub fn sense_with_flexes(
+        &mut self,
+        model: &Model,
+        (contacts, flexes): (&[Contact], &[FlexContact]),
+        (xpos, xmat): (&[Vec3], &[Mat3]),
+    ) {
         self.clear();
         let layout = self.layout.clone();
         touch_contacts(&layout, model, contacts, xpos, xmat, self.compat, &mut self.contacts);
+        let touched = TouchedBodies {
+            layout: &layout,
+            model,
+            poses: (xpos, xmat),
+            compat: self.compat,
+        };
+        touch_flexes(&touched, contacts.len(), flexes, &mut self.contacts);
         for k in 0..self.contacts.len() {
             let c = self.contacts[k];
             let skin = &layout.bodies()[c.index];
@@ -222,7 +240,10 @@ impl Touch {
                 TouchFunction::ForceVector => c.force_body,
                 TouchFunction::ForceVectorGlobal => c.force,
                 TouchFunction::NormalForce => {
-                    let contact = &contacts[c.contact];
+                    let contact = match c.contact.checked_sub(contacts.len()) {
+                        None => &contacts[c.contact],
+                        Some(of_flex) => &flexes[of_flex].contact,
+                    };
                     // the Python code takes a column of the contact frame for the normal
                     let normal = column(&contact.frame, 0);
                     mat_t_vec(&xmat[c.body], scale(normal, c.sign() * contact.force[0]))
