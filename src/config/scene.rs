@@ -25,6 +25,8 @@ pub enum Scene {
     Mobile,
     /// Furniture and toys, with MIMo sitting among them.
     Playroom,
+    /// The floor, with MIMo lying on his back under a blanket.
+    Blanket,
     /// A custom MJCF document, in which MIMo is included: a path that ends in `.xml`, which starts at the working directory
     /// unless it is absolute. Where a [`Blueprint`](crate::Blueprint) is given assets, the document may be one of them.
     File(String),
@@ -33,10 +35,17 @@ pub enum Scene {
 impl Scene {
     /// The scenes of BabyBench, in the order of the documentation.
     pub const BABYBENCH: &'static [Self] = &[Self::Base, Self::Crib, Self::Cubes];
-    /// All scenes of the library: those of BabyBench, and those of the tasks `mobile` and `play`.
-    pub const LIBRARY: &'static [Self] = &[Self::Base, Self::Crib, Self::Cubes, Self::Mobile, Self::Playroom];
+    /// All scenes of the library: those of BabyBench, those of the tasks `mobile` and `play`, and the blanket.
+    pub const LIBRARY: &'static [Self] = &[
+        Self::Base,
+        Self::Crib,
+        Self::Cubes,
+        Self::Mobile,
+        Self::Playroom,
+        Self::Blanket,
+    ];
     /// The names of [`Self::LIBRARY`] in a configuration file.
-    pub const NAMES: &'static [&'static str] = &["base", "crib", "cubes", "mobile", "playroom"];
+    pub const NAMES: &'static [&'static str] = &["base", "crib", "cubes", "mobile", "playroom", "blanket"];
     /// The ending of a document's path.
     pub const ENDING: &'static str = ".xml";
 
@@ -48,6 +57,7 @@ impl Scene {
             Self::Cubes => "cubes",
             Self::Mobile => "mobile",
             Self::Playroom => "playroom",
+            Self::Blanket => "blanket",
             Self::File(path) => path,
         }
     }

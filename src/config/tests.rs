@@ -182,7 +182,7 @@ fn errors_name_place_key_value_and_what_is_allowed() {
     );
     check_error(
         "scene: cube",
-        ":1:8: `scene` is cube, expected one of base, crib, cubes, mobile, playroom, or the path of a file that ends in .xml; did you mean `cubes`?",
+        ":1:8: `scene` is cube, expected one of base, crib, cubes, mobile, playroom, blanket, or the path of a file that ends in .xml; did you mean `cubes`?",
     );
     check_error(
         "seed:\nscene: crib",

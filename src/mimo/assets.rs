@@ -15,6 +15,7 @@ macro_rules! embed {
 
 embed![
     "babybench/base.xml",
+    "babybench/blanket.xml",
     "babybench/catch.xml",
     "babybench/catch_arm.xml",
     "babybench/classes_common.xml",

@@ -62,7 +62,7 @@ pub(crate) fn has_own_scene(behavior: Behavior) -> bool {
 fn babybench_scene(config: &Config) -> String {
     let version = Version::of(config.behavior).name();
     let pose = match config.scene {
-        Scene::Base | Scene::File(_) => r#"pos="0 0 0.1" euler="0 -90 0""#,
+        Scene::Base | Scene::Blanket | Scene::File(_) => r#"pos="0 0 0.1" euler="0 -90 0""#,
         Scene::Crib | Scene::Mobile => r#"pos="0 0 0.3" euler="0 -90 0""#,
         Scene::Cubes | Scene::Playroom => r#"pos="0 0 0.0467196" quat="0.885453 -0.000184209 -0.464728 -0.000527509""#,
     };
@@ -82,6 +82,7 @@ fn babybench_scene(config: &Config) -> String {
             xml += &include("mobile");
         }
         Scene::Playroom => xml += &include("playroom"),
+        Scene::Blanket => xml += &include("blanket"),
     }
     if !config.scene_extra.is_empty() {
         xml += &include(EXTRA_FILE.trim_end_matches(".xml"));

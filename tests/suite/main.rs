@@ -10,6 +10,7 @@ mod common;
 mod actuation;
 mod additions;
 mod batch;
+mod blanket;
 mod caregiver;
 mod composed;
 mod configurations;

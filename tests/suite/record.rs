@@ -41,6 +41,7 @@ fn a_record_is_repeated_with_the_same_bits() {
         (Behavior::SelfTouch, Scene::Crib),
         (Behavior::HandRegard, Scene::Cubes),
         (Behavior::None, Scene::Base),
+        (Behavior::None, Scene::Blanket),
     ] {
         let folder = Folder::new("record");
         let blueprint = touching(behavior, scene);

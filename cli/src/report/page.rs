@@ -76,6 +76,7 @@ fn title(run: &RunContents) -> String {
         Scene::Base => "on the floor".to_string(),
         Scene::Mobile => "in the crib with the mobile".to_string(),
         Scene::Playroom => "in the play room".to_string(),
+        Scene::Blanket => "under a blanket".to_string(),
         Scene::File(path) => format!("in {}", quoted(path)),
     };
     match config.age {

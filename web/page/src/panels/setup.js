@@ -12,7 +12,7 @@ import { senses } from "./senses.js";
 /** @typedef {import("../types").Setting} Setting */
 
 /** @type {[string, string][]} */
-const SCENES = [["crib", "Crib"], ["cubes", "Cubes"], ["base", "Floor"], ["mobile", "Mobile"], ["playroom", "Play room"]];
+const SCENES = [["crib", "Crib"], ["cubes", "Cubes"], ["base", "Floor"], ["mobile", "Mobile"], ["playroom", "Play room"], ["blanket", "Blanket"]];
 /** @type {[string, string][]} */
 const BODIES = [["v1", "Mitten hands (v1)"], ["v2", "Five fingers (v2)"]];
 /** @type {[string, string][]} */

@@ -51,7 +51,7 @@ export function transport(app) {
 /** @param {import("../app.js").App} app */
 export function caption(app) {
   /** @type {Record<string, string>} */
-  const scenes = { crib: "in its crib", cubes: "among cubes", base: "on the floor", mobile: "below a mobile", playroom: "among toys" };
+  const scenes = { crib: "in its crib", cubes: "among cubes", base: "on the floor", mobile: "below a mobile", playroom: "among toys", blanket: "under a blanket" };
   app.on("scene", (/** @type {import("../types").Scene} */ s) => {
     const name = String(s.settings.scene);
     say($("where"), `A virtual infant ${scenes[name] ?? `in ${name.replace(/^.*\/|\.xml$/gi, "").replaceAll("_", " ")}`}: skin, eyes and muscles, alive`);

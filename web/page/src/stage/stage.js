@@ -15,7 +15,7 @@ import { Spring } from "./spring.js";
 
 /** Starting views: azimuth, elevation, distance. */
 /** @type {Record<string, [number, number, number]>} */
-const VIEWS = { crib: [-0.98, 0.8, 1.72], cubes: [-0.42, 0.26, 1.7], base: [-0.8, 0.5, 1.7], mobile: [-0.98, 0.7, 2.2], playroom: [-0.6, 0.5, 1.9] };
+const VIEWS = { crib: [-0.98, 0.8, 1.72], cubes: [-0.42, 0.26, 1.7], base: [-0.8, 0.5, 1.7], mobile: [-0.98, 0.7, 2.2], playroom: [-0.6, 0.5, 1.9], blanket: [-0.8, 0.5, 1.7] };
 
 export class Stage {
   /**
