@@ -370,8 +370,14 @@ impl PhysicsData {
     fn flexes<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let (guard, dict) = (self.guard()?, PyDict::new(py));
         dict.set_item("flexvert_xpos", guard.state.flexvert_xpos[..].to_array(py)?)?;
-        dict.set_item("flexedge_length", PyArray1::from_slice(py, &guard.state.flexedge_length))?;
-        dict.set_item("flexedge_velocity", PyArray1::from_slice(py, &guard.state.flexedge_velocity))?;
+        dict.set_item(
+            "flexedge_length",
+            PyArray1::from_slice(py, &guard.state.flexedge_length),
+        )?;
+        dict.set_item(
+            "flexedge_velocity",
+            PyArray1::from_slice(py, &guard.state.flexedge_velocity),
+        )?;
         Ok(dict)
     }
 

@@ -37,6 +37,8 @@ _ROWS = ("type", "id", "pos", "margin", "R", "D", "vel", "aref", "force")
 _INPUTS = (
     *("qpos", "qvel", "act", "ctrl", "qfrc_applied", "xfrc_applied", "mocap_pos", "mocap_quat", "qacc_warmstart"),
 )
+_FLEXES = ("flexvert_xpos", "flexedge_length", "flexedge_velocity")
+"""Places of the vertices of flexes, lengths of their edges and rates of these, as copies."""
 _COUNTED = {"ne": (0,), "nf": (1, 2), "nl": (3, 4)}
 """Counts that MuJoCo keeps of the rows of constraints, by their types."""
 
@@ -134,6 +136,8 @@ class MjData(Named, metaclass=Fields):
             return self._own.jacobian().reshape(-1)
         if name.startswith("efc_") and name[4:] in _ROWS:
             return self._own.rows()[name[4:]]
+        if name in _FLEXES and self.model.nflex:
+            return self._own.flexes()[name]
         if name in EMPTY:
             return empty(name, self.model.nflex, "data")
         if name in NOT_OF_STATES:

@@ -5,7 +5,7 @@ from __future__ import annotations
 _WINDOW = "there is no window: draw with mujoco.Renderer, whose scene takes markers"
 _OPENGL = "there is no OpenGL: mujoco.Renderer draws pictures, depths and segmentations, and its scene takes markers"
 _PLUGINS = "the engine has no plugins: use MuJoCo for models that need them"
-_FLEXES = "flexes move in steps, and their fields are not shown: use MuJoCo to see them"
+_FLEXES = "flexes move in steps: read model.flex_vert, data.flexvert_xpos and the like"
 _STAGES = (
     "the engine computes stages together: call mj_fwdPosition, mj_fwdVelocity, mj_fwdConstraint, mj_forward or mj_step"
 )

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from .. import _native
 from ..named import KINDS, PREFIX, Named, accessor, numbers, span
 from .derived import DERIVED
-from .model_fields import EMPTY, NAME_ADDRESSES, NO_FLEXES, NO_PLUGINS, NOT_OF_MODELS, Absent, empty, name_block
+from .model_fields import EMPTY, FLEX_SIZES, NAME_ADDRESSES, NO_PLUGINS, NOT_OF_MODELS, Absent, empty, name_block
 from .options import FIXED, MISSING, MjOption, Settings, visual, with_rows
 
 _SINGLES = frozenset(
@@ -216,7 +216,7 @@ class MjModel(Named, metaclass=Fields):
         arrays.update({name: array for name, array in columns.items() if not name.startswith("vis_")})
         own = self.__dict__
         own.update({name: int(settings[name]) for name in _SIZES})
-        own.update(dict.fromkeys(NO_PLUGINS if settings["nflex"] else (*NO_PLUGINS, *NO_FLEXES), 0))
+        own.update(dict.fromkeys((*NO_PLUGINS, *FLEX_SIZES), 0))
         own.update(
             _own=native, _source=source, _model_name=str(settings["name"]), _names=names, _numbers=numbers(names)
         )
@@ -227,6 +227,8 @@ class MjModel(Named, metaclass=Fields):
         own.update(
             ntext=len(names["text"]), nuserdata=int(settings["nuserdata"]), nplugin=0, nwrap=len(extras["wrap_objid"])
         )
+        if settings["nflex"]:
+            own.update({size: len(self._shapes[array]) for size, array in FLEX_SIZES.items()})
         own["opt"] = MjOption(native, floats, settings)
         stat = {name: settings[name] for name in ("extent", "meaninertia", "meanmass", "meansize")}
         own["stat"] = Settings("stat", {**stat, "center": _fixed(settings["center"], "stat.center")})
@@ -289,7 +291,7 @@ class MjModel(Named, metaclass=Fields):
 
     @property
     def _shapes(self) -> dict[str, NDArray[Any]]:
-        """Arrays of meshes, height fields and skins, which are read once."""
+        """Arrays of meshes, height fields, skins and flexes, which are read once."""
         if "_meshes" not in self.__dict__:
             self.__dict__["_meshes"] = self._own.shapes()
         found: dict[str, NDArray[Any]] = self.__dict__["_meshes"]
@@ -314,12 +316,12 @@ class MjModel(Named, metaclass=Fields):
             return Absent(f"model.{name}")
         if name in _OWN:
             return None
+        if name in self._shapes:
+            return self._shapes[name]
         if name in EMPTY:
             return empty(name, self.nflex, "model")
         if name == "names" or name in NAME_ADDRESSES:
             return self._named(name)
-        if name in self._shapes:
-            return self._shapes[name]
         if name.endswith("_user") and name[:-5] in _USERS:
             count = len(self._names[_KIND_OF.get(name[:-5], name[:-5])])
             array = self._compiled(name)

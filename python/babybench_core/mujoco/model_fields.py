@@ -34,19 +34,26 @@ _EMPTY: dict[str, dict[int, str]] = {
         21: "flex_stiffness",
     },
 }
-"""The fields of flexes and plugins by type and numbers in a row. No document with plugins loads here."""
+"""The fields of flexes and plugins by type and numbers in a row. No document with plugins loads here. Models with flexes have most of theirs."""
 
 EMPTY: dict[str, tuple[str, int]] = {
     name: (dtype, width) for dtype, rows in _EMPTY.items() for width, names in rows.items() for name in names.split()
 }
-"""Type and numbers in a row of fields that are empty, those of flexes in models without flexes."""
+"""Type and numbers in a row of fields that are empty in models without flexes."""
 
 NO_PLUGINS = ("npluginattr", "npluginstate")
-NO_FLEXES = (
-    *("nflexedge", "nflexelem", "nflexelemdata", "nflexelemedge", "nflexevpair", "nflexnode"),
-    *("nflexshelldata", "nflextexcoord", "nflexvert"),
-)
-"""Sizes of a model that are 0 where it has no flexes; others are not kept."""
+FLEX_SIZES = {
+    "nflexedge": "flex_edge",
+    "nflexelem": "flex_elemlayer",
+    "nflexelemdata": "flex_elem",
+    "nflexelemedge": "flex_elemedge",
+    "nflexevpair": "flex_evpair",
+    "nflexnode": "flex_nodebodyid",
+    "nflexshelldata": "flex_shell",
+    "nflextexcoord": "flex_texcoord",
+    "nflexvert": "flex_vertbodyid",
+}
+"""Sizes of flexes, each with an array that is as long."""
 
 NOT_OF_MODELS = frozenset(
     (
@@ -93,7 +100,7 @@ NOT_OF_STATES = frozenset(
 
 
 def empty(name: str, flexes: int, of: str) -> Any:
-    """Returns an empty array of a field; in a model with flexes, whose fields are not kept, what says so."""
+    """Returns an empty array of a field; in a model with flexes, one that is not kept, what says so."""
     if flexes and "flex" in name:
         return Absent(f"{of}.{name}")
     dtype, width = EMPTY[name]
