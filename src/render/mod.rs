@@ -54,6 +54,7 @@ mod strip;
 mod tendon;
 mod texture;
 mod view;
+mod visible;
 
 pub use cpu::CpuRenderer;
 pub use cpu::luma;
