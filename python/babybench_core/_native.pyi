@@ -315,6 +315,9 @@ class Env:
     def set_age(self, age: float | None) -> dict[str, Any]:
         """Lets MIMo grow to an age in months; returns the configuration. The next call is a reset."""
     @property
+    def age(self) -> float | None:
+        """The age of MIMo's body, months."""
+    @property
     def model_changes(self) -> dict[str, _Array]:
         """The arrays that differ from those of the scene."""
     @property

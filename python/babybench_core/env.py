@@ -148,6 +148,7 @@ class Env(SceneAccess, gymnasium.Env[Observation, npt.NDArray[Any]]):
         if wanted.get("model") is not None:
             self.change_model(wanted["model"])
         observation = self._core.reset(seed)
+        self._follow_age()
         self._show(0.0)
         return observation, self._core.info()
 
@@ -321,9 +322,19 @@ class Env(SceneAccess, gymnasium.Env[Observation, npt.NDArray[Any]]):
             ValueError: An age that is not allowed; nothing has happened then.
         """
         self.config = self._core.set_age(None if age is None else float(age))
+        self._forget_layouts()
+        self.observation_space = spaces.observation_space(self._core)
+
+    def _forget_layouts(self) -> None:
         for layout in ("proprioception", "touch"):
             self.__dict__.pop(layout, None)
-        self.observation_space = spaces.observation_space(self._core)
+
+    def _follow_age(self) -> None:
+        """Takes over the age of a MIMo who grows by ``age_schedule``."""
+        age = self._core.age
+        if age != self.config["age"]:
+            self.config = {**self.config, "age": age}
+            self._forget_layouts()
 
     # --- other moments ---
 
@@ -340,6 +351,7 @@ class Env(SceneAccess, gymnasium.Env[Observation, npt.NDArray[Any]]):
             ValueError: A snapshot of another environment, or a damaged one; nothing has changed then.
         """
         self._core.restore(snapshot)
+        self._follow_age()
 
     def swap_facial_expression(self, expression: str) -> None:
         """Changes MIMo's face: ``default``, ``happy``, ``sad``, ``surprised``, ``angry``, ``disgusted``, ``scared``.

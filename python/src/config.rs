@@ -22,6 +22,8 @@ enum Value {
     Number(f64),
     Text(String),
     List(Vec<Self>),
+    /// Ages over steps.
+    Ages(Vec<(Self, Self)>),
 }
 
 impl<'de> Deserializer<'de> for Value {
@@ -39,6 +41,7 @@ impl<'de> Deserializer<'de> for Value {
             Self::Number(number) => visitor.visit_f64(number),
             Self::Text(text) => visitor.visit_string(text),
             Self::List(values) => visitor.visit_seq(SeqDeserializer::new(values.into_iter())),
+            Self::Ages(ages) => visitor.visit_map(MapDeserializer::new(ages.into_iter())),
         }
     }
 
@@ -80,6 +83,12 @@ fn value_of(key: &str, value: &Bound<'_, PyAny>) -> PyResult<Value> {
     if value.is_instance_of::<PyList>() || value.is_instance_of::<PyTuple>() {
         let values = value.try_iter()?.map(|item| value_of(key, &item?));
         return Ok(Value::List(values.collect::<PyResult<_>>()?));
+    }
+    if let (Ok(ages), "age" | "age_schedule") = (value.cast::<PyDict>(), key) {
+        let ages = ages
+            .iter()
+            .map(|(steps, age)| Ok((value_of(key, &steps)?, value_of(key, &age)?)));
+        return Ok(Value::Ages(ages.collect::<PyResult<_>>()?));
     }
     let kind = value.get_type();
     let module = kind.module()?;

@@ -63,6 +63,36 @@ impl Env {
         Self::observed(py, inner)
     }
 
+    /// Makes anew what was made of the body as it was.
+    fn remade(py: Python<'_>, inner: &mut Inner) -> PyResult<()> {
+        inner.painters = Painters::default();
+        inner.second = inner.env.blueprint().second_infant();
+        inner.blueprint = Py::new(
+            py,
+            Blueprint {
+                inner: inner.env.blueprint().clone(),
+            },
+        )?;
+        if inner.views.is_some() {
+            inner.views = Some(Views::new(py, &inner.env, inner.lazy)?);
+        }
+        Ok(())
+    }
+
+    /// Does something that may let a MIMo with a schedule of ages grow.
+    fn growing<E: IntoException + Send>(
+        py: Python<'_>,
+        inner: &mut Inner,
+        work: impl FnOnce(&mut babybench::Env) -> Result<(), E> + Send,
+    ) -> PyResult<()> {
+        let before = inner.env.config().age;
+        detached(py, || work(&mut inner.env))?;
+        if inner.env.config().age == before {
+            return Ok(());
+        }
+        Self::remade(py, inner)
+    }
+
     /// Returns the present observation.
     pub fn observed<'py>(py: Python<'py>, inner: &mut Inner) -> PyResult<Bound<'py, PyDict>> {
         if inner.lazy && inner.views.is_none() {
@@ -108,7 +138,7 @@ impl Env {
     fn reset<'py>(&self, py: Python<'py>, seed: Option<u64>) -> PyResult<Bound<'py, PyDict>> {
         let mut guard = self.guard()?;
         let inner = guard.open()?;
-        detached(py, || inner.env.reset(seed).map(|_| ()))?;
+        Self::growing(py, inner, |env| env.reset(seed).map(drop))?;
         Self::observed(py, inner)
     }
 
@@ -117,8 +147,9 @@ impl Env {
         let inner = guard.open()?;
         let (rows, width) = (actions.len()?, inner.env.action_space().len());
         read("actions", actions, &[rows, width], &mut inner.action)?;
-        let Inner { env, action, .. } = &mut *inner;
-        detached(py, || env.by_hand().reset_with(action).map(|_| ()))?;
+        let action = std::mem::take(&mut inner.action);
+        Self::growing(py, inner, |env| env.by_hand().reset_with(&action).map(drop))?;
+        inner.action = action;
         Self::observed(py, inner)
     }
 
@@ -399,17 +430,17 @@ impl Env {
         Ok(PyBytes::new(py, snapshot.as_bytes()))
     }
 
-    fn restore(&self, snapshot: &[u8]) -> PyResult<()> {
+    fn restore(&self, py: Python<'_>, snapshot: &[u8]) -> PyResult<()> {
         let snapshot = Snapshot::from_bytes(snapshot.to_vec()).map_err(IntoException::into_exception)?;
-        let restored = self.guard()?.open()?.env.restore(&snapshot);
-        restored.map_err(IntoException::into_exception)
+        let mut guard = self.guard()?;
+        Self::growing(py, guard.open()?, |env| env.restore(&snapshot))
     }
 
     fn resume<'py>(&self, py: Python<'py>, snapshot: &[u8]) -> PyResult<Bound<'py, PyDict>> {
         let snapshot = Snapshot::from_bytes(snapshot.to_vec()).map_err(IntoException::into_exception)?;
         let mut guard = self.guard()?;
         let inner = guard.open()?;
-        detached(py, || inner.env.by_hand().resume(&snapshot).map(drop))?;
+        Self::growing(py, inner, |env| env.by_hand().resume(&snapshot).map(drop))?;
         Self::observed(py, inner)
     }
 
@@ -437,19 +468,13 @@ impl Env {
         let mut guard = self.guard()?;
         let inner = guard.open()?;
         detached(py, || inner.env.mimo_mut().set_age(age))?;
-        // what was made of the body as it was
-        inner.painters = Painters::default();
-        inner.second = inner.env.blueprint().second_infant();
-        inner.blueprint = Py::new(
-            py,
-            Blueprint {
-                inner: inner.env.blueprint().clone(),
-            },
-        )?;
-        if inner.views.is_some() {
-            inner.views = Some(Views::new(py, &inner.env, inner.lazy)?);
-        }
+        Self::remade(py, inner)?;
         to_dict(py, inner.env.config())
+    }
+
+    #[getter]
+    fn age(&self) -> PyResult<Option<f64>> {
+        Ok(self.guard()?.open()?.env.config().age)
     }
 
     fn model_array<'py>(&self, py: Python<'py>, name: &str) -> PyResult<Bound<'py, PyAny>> {

@@ -38,6 +38,8 @@ impl IntoException for EnvError {
             | Self::Render(_)
             | Self::Actuation(_)
             | Self::ModelChange(_)
+            | Self::Schedule { .. }
+            | Self::Spaces { .. }
             | Self::MocapMotion(_)
             | Self::NoVision
             | Self::SenseOff { .. }

@@ -113,6 +113,9 @@ pub fn infos_dict<'py>(py: Python<'py>, infos: Infos<'_>) -> PyResult<Bound<'py,
     if let Some(ages) = infos.vision_age {
         dict.set_item(intern!(py, "vision_age"), PyArray1::from_slice(py, ages))?;
     }
+    if let Some(ages) = infos.age {
+        dict.set_item(intern!(py, "age"), PyArray1::from_slice(py, ages))?;
+    }
     if let Some(shares) = infos.reflexes {
         let columns = infos.reflex_names.len();
         for (column, reflex) in infos.reflex_names.iter().enumerate() {

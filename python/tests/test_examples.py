@@ -42,6 +42,14 @@ def test_plot_touch(tmp_path):
     assert (tmp_path / "touch.png").stat().st_size > 30_000
 
 
+def test_growing(tmp_path):
+    pytest.importorskip("matplotlib", reason="the curves need matplotlib")
+    said = run("growing.py", "--generations", 3, "--population", 5, "--seeds", 1, cwd=tmp_path)
+    for learner, age in (("grows", 9), ("shrinks", 1), ("9 months", 9)):
+        assert re.search(rf"^{learner} +rolled 0\.\d\d of the way .* at {age} months$", said, re.MULTILINE), said
+    assert (tmp_path / "growing.png").stat().st_size > 10_000
+
+
 @pytest.mark.parametrize("notebook", ["quick_start", "touch_on_the_body"])
 def test_notebooks(notebook, tmp_path):
     nbclient = pytest.importorskip("nbclient", reason="notebooks need nbclient and ipykernel")

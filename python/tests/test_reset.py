@@ -152,3 +152,40 @@ def test_what_has_no_bounds_says_so():
     flat = gymnasium.wrappers.FlattenObservation(env)
     with pytest.raises((AssertionError, ValueError)):  # refused by Gymnasium, with its own words
         gymnasium.wrappers.RescaleObservation(flat, -1, 1)
+
+
+def test_an_infant_who_grows():
+    """The age follows the schedule at resets and restored snapshots, in one environment and by row."""
+    keys = {"vision_active": False, "touch_grows": True, "touch_scale": 3.0, "max_episode_steps": 4}
+    env = babybench.make("self_touch", age={0: 1, 8: 3}, **keys)
+    assert env.config["age_schedule"] == "0: 1, 8: 3"
+    spaces = env.observation_space
+    action = np.zeros(env.action_space.shape, np.float32)
+    ages, sizes = [], []
+    for seed in range(4):
+        observation, info = env.reset(seed=seed)
+        assert spaces.contains(observation)
+        assert env.config["age"] == info["age"]
+        ages.append(info["age"])
+        sizes.append(env.array("body_mass").sum())
+        if seed == 0:
+            snapshot = env.snapshot()
+        for _ in range(4):
+            assert env.step(action)[4]["age"] == ages[-1]
+    assert ages == [1, 2, 3, 3]
+    assert sizes[0] < sizes[1] < sizes[2] == sizes[3]
+    env.restore(snapshot)
+    assert env.config["age"] == 1
+    with pytest.raises(ValueError, match="age_schedule"):
+        env.set_age(5)
+    with pytest.raises(ValueError, match="touch_grows"):
+        babybench.make("self_touch", age={0: 1, 8: 3})
+    with pytest.raises(ValueError, match="rising steps"):
+        babybench.make("self_touch", age={5: 1}, **keys)
+
+    envs = babybench.VectorEnv({**babybench.config_examples()["self_touch"], **keys, "age": {0: 1, 8: 3}}, 2)
+    infos = envs.reset(seed=0)[1]
+    for _ in range(10):
+        np.testing.assert_array_equal(infos["age"], infos["age"][0])
+        infos = envs.step(np.zeros(envs.action_space.shape, np.float32))[4]
+    assert infos["age"].tolist() == [3, 3]

@@ -27,7 +27,14 @@ const SIDES: [&str; 7] = [
 ];
 
 /// Keys of MIMo's body and motors that the Python code of BabyBench does not have.
-const BODY: [&str; 5] = ["strength", "springs", "proportions", "noise_motor_color", "reflexes"];
+const BODY: [&str; 6] = [
+    "strength",
+    "springs",
+    "proportions",
+    "noise_motor_color",
+    "reflexes",
+    "age_schedule",
+];
 
 /// Keys that shape a sense, and what to do when it is off.
 struct SenseKeys {
@@ -37,7 +44,12 @@ struct SenseKeys {
 }
 
 /// The keys that shape senses that can be off, or motors.
-const SHAPING: [SenseKeys; 8] = [
+const SHAPING: [SenseKeys; 9] = [
+    SenseKeys {
+        off: |c| c.age_schedule.is_empty(),
+        keys: &["age_grid"],
+        reason: "it rounds the ages of `age_schedule`, which is none; set `age: {0: 1, 500000: 6}`",
+    },
     SenseKeys {
         off: |c| !c.vision_active,
         keys: &[
@@ -126,6 +138,7 @@ impl Config {
     /// Returns the first value that another one excludes: key, value, and why.
     pub(super) fn conflict(&self) -> Option<Conflict> {
         self.unused()
+            .or_else(|| self.unequal_ages())
             .or_else(|| self.impossible_delay())
             .or_else(|| self.impossible_reflex())
             .or_else(|| defaults::conflict(self))
@@ -171,6 +184,16 @@ impl Config {
             Compat::Reference => return self.body_unlike_reference().or_else(|| self.eyes_unlike_reference()),
         };
         Some((key, value, reason.to_string()))
+    }
+
+    /// Returns the first value with which observations would not be the same while MIMo grows.
+    fn unequal_ages(&self) -> Option<Conflict> {
+        if self.age_schedule.is_empty() || !self.touch_enabled() || self.touch_grows {
+            return None;
+        }
+        let reason = "MIMo grows by `age_schedule`, and the number of touch sensors would change with his skin; set `touch_grows: true`, \
+                      or `touch_active: false`";
+        Some(("touch_grows", self.touch_grows.to_string(), reason.to_string()))
     }
 
     /// Returns the first key about reflexes that has no meaning beside the others.
@@ -243,7 +266,7 @@ impl Config {
         // a default says nothing of what the user wants, so only values that differ from it are refused
         let set = |key: &&super::Key| key.value(self) != key.default_value();
         let conflict = |key: &super::Key, reason: &str| (key.name, key.value(self).to_yaml(), reason.to_string());
-        if self.age.is_none() {
+        if self.age.is_none() && self.age_schedule.is_empty() {
             let mut of_growth = Self::keys().iter().filter(|key| key.section == table::GROWTH);
             if let Some(key) = of_growth.find(set) {
                 let reason = "it changes MIMo at an age, and `age` is none; set `age`, 0 to 24 months";
@@ -262,7 +285,7 @@ impl Config {
     /// Returns the first delay that is not a whole number of steps, or that needs too much memory.
     fn impossible_delay(&self) -> Option<Conflict> {
         let delays = &self.delays;
-        if delays.by_age && self.age.is_none() {
+        if delays.by_age && self.age.is_none() && self.age_schedule.is_empty() {
             let reason = "it is that of MIMo's age, and `age` is none; set `age`, 0 to 24 months";
             return Some(("delay_by_age", delays.by_age.to_string(), reason.to_string()));
         }

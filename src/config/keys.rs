@@ -8,6 +8,7 @@ use super::kinds::KeyValue;
 use super::outputs::VisionOutputs;
 use super::reflexes::ReflexSet;
 use super::scene::Scene;
+use super::schedule::AgeSchedule;
 
 /// A field of [`Config`](super::Config) that converts to and from a [`KeyValue`].
 pub(super) trait ConfigField: Sized {
@@ -71,6 +72,23 @@ impl ConfigField for Scene {
         match value {
             KeyValue::Choice(name) => Self::from_name(name),
             KeyValue::Text(path) => Some(Self::File(path.clone())),
+            _ => None,
+        }
+    }
+}
+
+impl ConfigField for AgeSchedule {
+    fn to_value(&self) -> KeyValue {
+        if self.is_empty() {
+            KeyValue::None
+        } else {
+            KeyValue::Text(self.to_string())
+        }
+    }
+    fn from_value(value: &KeyValue) -> Option<Self> {
+        match value {
+            KeyValue::None => Some(Self::default()),
+            KeyValue::Text(text) => Self::parse(text),
             _ => None,
         }
     }

@@ -1,6 +1,7 @@
 //! The values of keys: their types, their notation, their bounds.
 
 use super::error;
+use super::schedule::AgeSchedule;
 
 /// The value of a key.
 #[derive(Clone, Debug, PartialEq)]
@@ -91,6 +92,11 @@ pub enum KeyKind {
     List(&'static [&'static str]),
     /// None, one of the given names, or a list of them, each once.
     NoneOrList(&'static [&'static str]),
+    /// None, or ages over steps, as a mapping or as text such as `0: 1, 500000: 6`: [`AgeSchedule`].
+    NoneOrAges {
+        /// Greatest age, months.
+        max: f64,
+    },
     /// Text of at least one character, without control characters.
     Text,
     /// Text of any number of lines, or of none, up to 1 MiB.
@@ -128,6 +134,11 @@ impl KeyKind {
             Self::NoneOrList(names) => {
                 format!("none, or a list in brackets of some of {}, each once", names.join(", "))
             }
+            Self::NoneOrAges { max } => {
+                format!(
+                    "none, or a mapping of rising steps, the first 0, to ages from 0 to {max} months, such as {{0: 1, 500000: 6}}"
+                )
+            }
             Self::Document => "text of up to 1 MiB, of any number of lines".to_string(),
             Self::Text => {
                 "text, at least one character and no control characters (in quotes if it looks like a number, a \
@@ -141,7 +152,7 @@ impl KeyKind {
     pub(super) fn allows_none(&self) -> bool {
         matches!(
             self,
-            Self::NoneOr { .. } | Self::NoneOrWhole { .. } | Self::NoneOrList(_)
+            Self::NoneOr { .. } | Self::NoneOrWhole { .. } | Self::NoneOrList(_) | Self::NoneOrAges { .. }
         )
     }
 
@@ -164,6 +175,11 @@ impl KeyKind {
                 return Err(ValueFault::WrongType);
             }
             Self::Number { .. } | Self::NoneOr { .. } | Self::NoneOrWhole { .. } => return Err(ValueFault::WrongType),
+            Self::NoneOrAges { .. } if text.contains(':') => {
+                let schedule = AgeSchedule::parse(text).ok_or(OUT_OF_RANGE)?;
+                KeyValue::Text(schedule.to_string())
+            }
+            Self::NoneOrAges { .. } => return Err(ValueFault::WrongType),
             Self::Choice(names) => KeyValue::Choice(named(text, names)?),
             Self::NoneOrList(names) => KeyValue::List(vec![named(text, names)?]),
             // by the ending alone: whether the file exists is known when the scene is made, with the caller's assets
@@ -204,7 +220,11 @@ impl KeyKind {
             (Self::ZeroOrAtLeast(least), KeyValue::Number(number)) => {
                 number.is_finite() && (*number == 0.0 || number >= least)
             }
-            (Self::NoneOr { .. } | Self::NoneOrWhole { .. } | Self::NoneOrList(_), KeyValue::None) => true,
+            (_, KeyValue::None) if self.allows_none() => true,
+            (Self::NoneOrAges { max }, KeyValue::Text(text)) => {
+                let schedule = AgeSchedule::parse(text);
+                schedule.is_some_and(|schedule| schedule.points().iter().all(|(_, age)| age <= max))
+            }
             (Self::Number { min, max } | Self::NoneOr { min, max }, KeyValue::Number(number)) => {
                 (min..=max).contains(&number)
             }

@@ -20,6 +20,7 @@
 //! With the feature `serde`, a [`Config`] is a flat map in every format that serde knows, with the same keys, defaults and
 //! checks.
 
+mod ages;
 mod choices;
 mod conflicts;
 mod defaults;
@@ -33,6 +34,7 @@ mod parts;
 mod reader;
 mod reflexes;
 mod scene;
+mod schedule;
 mod senses;
 #[cfg(feature = "eval")]
 mod serial;
@@ -54,6 +56,7 @@ pub use parts::{BodyParts, Part};
 pub use reader::ConfigReader;
 pub use reflexes::ReflexSet;
 pub use scene::Scene;
+pub use schedule::AgeSchedule;
 pub use table::Config;
 pub use table::Key;
 pub use table::{

@@ -6,6 +6,7 @@ use serde::de::{DeserializeSeed, Error as _, MapAccess, SeqAccess, Visitor};
 use serde::ser::SerializeMap as _;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
+use super::ages;
 use super::error::{self, Location};
 use super::kinds::{KeyKind, KeyValue, ValueFault};
 use super::table::KEYS;
@@ -42,6 +43,7 @@ impl Serialize for Config {
                     map.serialize_entry(key.name, &Some(number))?;
                 }
                 (KeyKind::NoneOrList(_), KeyValue::List(names)) => map.serialize_entry(key.name, &Some(names))?,
+                (KeyKind::NoneOrAges { .. }, KeyValue::Text(ages)) => map.serialize_entry(key.name, &Some(ages))?,
                 (_, value) => map.serialize_entry(key.name, &value)?,
             }
         }
@@ -82,6 +84,11 @@ impl<'de> Visitor<'de> for ConfigVisitor {
                 return Err(A::Error::duplicate_field(key.name));
             }
             let value = map.next_value_seed(ValueSeed { key })?;
+            let own = ages::of_value(index, &value);
+            let key = &KEYS[own];
+            if own != index && std::mem::replace(&mut seen[own], true) {
+                return Err(A::Error::duplicate_field(key.name));
+            }
             if !key.assign(&mut config, &value) {
                 let refusal = yaml::refusal(key, ValueFault::WrongType, value.to_yaml(), place());
                 return Err(A::Error::custom(refusal));
@@ -161,9 +168,10 @@ impl<'de> DeserializeSeed<'de> for ValueSeed {
             KeyKind::Bool => deserializer.deserialize_bool(self),
             KeyKind::Whole { .. } => deserializer.deserialize_u64(self),
             KeyKind::ZeroOrAtLeast(_) | KeyKind::Number { .. } => deserializer.deserialize_f64(self),
-            KeyKind::NoneOr { .. } | KeyKind::NoneOrWhole { .. } | KeyKind::NoneOrList(_) => {
-                deserializer.deserialize_option(self)
-            }
+            KeyKind::NoneOr { .. }
+            | KeyKind::NoneOrWhole { .. }
+            | KeyKind::NoneOrList(_)
+            | KeyKind::NoneOrAges { .. } => deserializer.deserialize_option(self),
             KeyKind::Choice(_) | KeyKind::ChoiceOrFile { .. } | KeyKind::Text | KeyKind::Document => {
                 deserializer.deserialize_str(self)
             }
@@ -212,6 +220,7 @@ impl<'de> Visitor<'de> for ValueSeed {
         match self.key.kind {
             kind if kind.allows_none() && text == KeyValue::None.to_yaml() => Ok(KeyValue::None),
             KeyKind::NoneOrList(_)
+            | KeyKind::NoneOrAges { .. }
             | KeyKind::Choice(_)
             | KeyKind::ChoiceOrFile { .. }
             | KeyKind::Text
@@ -239,6 +248,7 @@ impl<'de> Visitor<'de> for ValueSeed {
         match self.key.kind {
             KeyKind::NoneOrWhole { .. } => deserializer.deserialize_u64(self),
             KeyKind::NoneOrList(_) => deserializer.deserialize_seq(self),
+            KeyKind::NoneOrAges { .. } => deserializer.deserialize_str(self),
             _ => deserializer.deserialize_f64(self),
         }
     }
@@ -256,109 +266,56 @@ impl<'de> Visitor<'de> for ValueSeed {
         self.checked(KeyValue::List(names))
     }
 
-    fn visit_map<A: MapAccess<'de>>(self, _: A) -> Result<KeyValue, A::Error> {
+    fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<KeyValue, A::Error> {
+        if ages::takes_ages(self.key) {
+            let mut text = String::new();
+            while let Some((Scalar(steps), Scalar(age))) = map.next_entry()? {
+                text += &format!("{steps}:{age},");
+                if text.len() > ages::MAX_TEXT {
+                    break;
+                }
+            }
+            let seed = Self { key: ages::schedule() };
+            return seed.visit_str(text.trim_end_matches(','));
+        }
         Err(self.refusal(ValueFault::WrongType, "a map".to_string()))
     }
 }
 
-#[cfg(all(test, feature = "eval"))]
-mod tests {
-    use super::*;
-    use crate::config::{Behavior, Compat, EngineKind, Scene, TouchFunction};
+/// A number, or text that may be one: formats differ in what the keys of a map are.
+struct Scalar(String);
 
-    fn read(json: &str) -> Result<Config, String> {
-        serde_json::from_str(json).map_err(|e| e.to_string())
-    }
-
-    #[test]
-    fn a_configuration_comes_back_from_json() {
-        let mut config = Config {
-            save_dir: "a \"b\" \\ \u{301}é\u{2028}".to_string(),
-            behavior: Behavior::HandRegard,
-            scene: Scene::Cubes,
-            engine: EngineKind::Rapier,
-            seed: u64::MAX,
-            touch_scale: 0.1 + 0.2,
-            touch_function: TouchFunction::ForceVector,
-            ..Config::default()
-        };
-        config.lock.head = true;
-        let json = serde_json::to_string(&config).expect("JSON");
-        assert_eq!(read(&json), Ok(config));
-        assert_eq!(read("{}"), Ok(Config::default()));
-        assert_eq!(read(r#"{"touch_scale": 2}"#).map(|c| c.touch_scale), Ok(2.0));
-    }
-
-    #[test]
-    fn a_configuration_comes_back_from_a_binary_format() {
-        let mut config = Config {
-            age: Some(4.5),
-            seed: u64::MAX,
-            ..Config::default()
-        };
-        config.measurements.foot_length = Some(7.25);
-        config.delays.vision = Some(3.0);
-        config.eyes.foveation_left = Some(2.0);
-        config.eyes.width_left = Some(200);
-        for config in [Config::default(), config] {
-            let bytes = postcard::to_stdvec(&config).expect("bytes");
-            assert_eq!(postcard::from_bytes(&bytes), Ok(config));
-        }
-        let bytes = postcard::to_stdvec(&[("age", Some(99.0))]).expect("bytes");
-        assert!(postcard::from_bytes::<Config>(&bytes).is_err());
-    }
-
-    #[test]
-    fn keys_are_those_of_the_file_in_its_order() {
-        let json = serde_json::to_string(&Config::default()).expect("JSON");
-        let places: Vec<_> = KEYS.iter().map(|k| json.find(&format!("\"{}\":", k.name))).collect();
-        assert!(places.iter().all(Option::is_some) && places.is_sorted(), "{places:?}");
-    }
-
-    #[test]
-    fn what_a_file_may_not_hold_is_refused_by_its_key() {
-        for (json, parts) in [
-            (
-                r#"{"behaviour": 1}"#,
-                &["unknown key `behaviour`", "did you mean `behavior`?"][..],
-            ),
-            (r#"{"seed": 1, "seed": 2}"#, &["duplicate field `seed`"]),
-            (r#"{"seed": -1}"#, &["`seed` is -1, expected a whole number from 0"]),
-            (r#"{"seed": 1.5}"#, &["`seed` is 1.5, expected a whole number"]),
-            (r#"{"seed": "1"}"#, &["`seed` is '1' in quotes"]),
-            (r#"{"frame_skip": 0}"#, &["`frame_skip` is 0"]),
-            (r#"{"frame_skip": true}"#, &["`frame_skip` is true"]),
-            (r#"{"touch_scale": 0.001}"#, &["`touch_scale` is 0.001, expected 0 or"]),
-            (r#"{"touch_scale": -1}"#, &["`touch_scale` is -1"]),
-            (r#"{"act_eyes": 1}"#, &["`act_eyes` is 1, expected true or false"]),
-            (r#"{"act_eyes": null}"#, &["`act_eyes` needs a value"]),
-            (r#"{"act_eyes": [true]}"#, &["`act_eyes` is a list"]),
-            (r#"{"scene": {"name": "crib"}}"#, &["`scene` is a map"]),
-            (r#"{"scene": "crip"}"#, &["`scene` is crip", "did you mean `crib`?"]),
-            (r#"{"save_dir": ""}"#, &["`save_dir`"]),
-            (r#"{"save_dir": "a\u0000b"}"#, &["`save_dir`", "no control characters"]),
-            (r#"{"save_dir": 3}"#, &["`save_dir` is 3"]),
-            (
-                r#"{"touch_function": "normal_force"}"#,
-                &["`touch_function`", "compat: reference"],
-            ),
-            (r#"["behavior"]"#, &["a flat map of configuration keys"]),
-        ] {
-            let error = read(json).expect_err(json);
-            for part in parts {
-                assert!(error.contains(part), "{json}: {error}: no {part:?}");
-            }
-        }
-    }
-
-    #[test]
-    fn choices_are_their_names() {
-        for compat in Compat::ALL {
-            let json = serde_json::to_string(compat).expect("JSON");
-            assert_eq!(json, format!("\"{compat}\""));
-            assert_eq!(serde_json::from_str::<Compat>(&json).ok(), Some(*compat));
-        }
-        let error = serde_json::from_str::<Compat>("\"apy\"").expect_err("no such name");
-        assert!(error.to_string().contains("unknown variant `apy`"), "{error}");
+impl<'de> Deserialize<'de> for Scalar {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        deserializer.deserialize_any(ScalarVisitor)
     }
 }
+
+struct ScalarVisitor;
+
+impl Visitor<'_> for ScalarVisitor {
+    type Value = Scalar;
+
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("a number")
+    }
+
+    fn visit_u64<E: serde::de::Error>(self, number: u64) -> Result<Scalar, E> {
+        Ok(Scalar(number.to_string()))
+    }
+
+    fn visit_i64<E: serde::de::Error>(self, number: i64) -> Result<Scalar, E> {
+        Ok(Scalar(number.to_string()))
+    }
+
+    fn visit_f64<E: serde::de::Error>(self, number: f64) -> Result<Scalar, E> {
+        Ok(Scalar(number.to_string()))
+    }
+
+    fn visit_str<E: serde::de::Error>(self, text: &str) -> Result<Scalar, E> {
+        Ok(Scalar(text.to_string()))
+    }
+}
+
+#[cfg(test)]
+mod tests;

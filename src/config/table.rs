@@ -11,6 +11,7 @@ use super::outputs::VisionOutputs;
 use super::parts::BodyParts;
 use super::reflexes::ReflexSet;
 use super::scene::Scene;
+use super::schedule::AgeSchedule;
 use crate::render::MAX_SIZE;
 
 /// Greatest age that MIMo can have, months.
@@ -38,6 +39,11 @@ const SEED: KeyKind = KeyKind::Whole { min: 0, max: u64::MAX };
 const SCALE: KeyKind = KeyKind::ZeroOrAtLeast(0.01); // sensors grow with the inverse square: 170 million values at 0.01
 
 const AGE: KeyKind = KeyKind::NoneOr { min: 0.0, max: MAX_AGE };
+const AGES: KeyKind = KeyKind::NoneOrAges { max: MAX_AGE };
+const GRID: KeyKind = KeyKind::Number {
+    min: 0.01,
+    max: MAX_AGE,
+};
 const CENTIMETRES: KeyKind = KeyKind::NoneOr { min: 0.1, max: 100.0 };
 const DELAY: KeyKind = KeyKind::Number {
     min: 0.0,
@@ -152,6 +158,8 @@ config! {
     }
     GROWTH {
         age: Option<f64> = None, AGE, "The age of MIMo's body, months; none for the original proportions.";
+        age_schedule: AgeSchedule = AgeSchedule::default(), AGES, "The ages of a MIMo who grows while he learns, months over steps of the environment; `age: {0: 1, 500000: 6}` sets it, too." + "Each episode begins at the age of its first step.";
+        age_grid: f64 = 0.25, GRID, "Ages between two points of `age_schedule` are multiples of this, months.";
         strength_age: Option<f64> = None, AGE, "The age of MIMo's strength, months; none for that of his body.";
         strength: StrengthModel = StrengthModel::Volume, Choice(StrengthModel::NAMES), "What the strength of motors and muscles follows." + "`volume` follows the part that carries them, `infant` ratios to the torque of gravity at each age, calibrated on what infants can do.";
         springs: SpringModel = SpringModel::Fixed, Choice(SpringModel::NAMES), "What springs and dampers of joints follow." + "`fixed` keeps those of the original proportions, `weight` follows the torque of gravity on each joint.";

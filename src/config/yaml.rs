@@ -1,8 +1,9 @@
 //! The way from YAML text to a [`Config`], through the table of keys.
 //!
-//! The parser hands over one event at a time and anything but a flat mapping of scalars, and of short lists of them, ends the
+//! The parser hands over one event at a time and anything but a flat mapping of scalars, and of short lists and mappings of them, ends the
 //! reading at once, so neither nesting nor aliases can grow.
 
+use super::ages;
 use super::error::{self, Location};
 use super::kinds::{KeyKind, KeyValue, ValueFault};
 use super::table::KEYS;
@@ -21,7 +22,7 @@ pub(super) fn read(text: &str, file: &str, config: &mut Config) -> Result<Vec<Op
     };
     reader.start()?;
     let mut positions = vec![None; KEYS.len()];
-    while let Some((index, value, position)) = reader.entry(&positions)? {
+    while let Some((index, value, position)) = reader.entry(&mut positions)? {
         // a value that parses may still not convert, when a key's kind and the type of its field differ
         let key = &KEYS[index];
         if !key.assign(config, &value) {
@@ -121,7 +122,7 @@ impl<'t> YamlReader<'t> {
     }
 
     /// Reads the next key, as an index into [`KEYS`], its value and the value's position; `None` after the last.
-    fn entry(&mut self, seen: &[Option<LineColumn>]) -> Result<Option<(usize, KeyValue, LineColumn)>, ConfigError> {
+    fn entry(&mut self, seen: &mut [Option<LineColumn>]) -> Result<Option<(usize, KeyValue, LineColumn)>, ConfigError> {
         let (name, at) = match self.next()? {
             (Event::MappingEnd, _) => return Ok(None),
             (Event::Scalar(name, _, anchor, tag), at) => {
@@ -140,17 +141,26 @@ impl<'t> YamlReader<'t> {
                 nearest,
             });
         };
-        // PyYAML keeps the last one in silence, which hides a mistake
-        if let Some((first_line, _)) = seen[index] {
-            let location = self.location(at);
-            return Err(ConfigError::DuplicateKey {
-                location,
-                key: KEYS[index].name,
-                first_line,
-            });
+        self.refuse_second(index, seen, at)?;
+        seen[index] = Some(at);
+        let (value, value_at) = self.value(&KEYS[index])?;
+        let own = ages::of_value(index, &value);
+        if own != index {
+            self.refuse_second(own, seen, at)?;
         }
-        let (value, at) = self.value(&KEYS[index])?;
-        Ok(Some((index, value, at)))
+        Ok(Some((own, value, value_at)))
+    }
+
+    /// Refuses a key that was there before: PyYAML keeps the last one in silence, which hides a mistake.
+    fn refuse_second(&self, index: usize, seen: &[Option<LineColumn>], at: LineColumn) -> Result<(), ConfigError> {
+        let Some((first_line, _)) = seen[index] else {
+            return Ok(());
+        };
+        Err(ConfigError::DuplicateKey {
+            location: self.location(at),
+            key: KEYS[index].name,
+            first_line,
+        })
     }
 
     /// Reads the value of a key, and its position.
@@ -169,6 +179,10 @@ impl<'t> YamlReader<'t> {
             Event::SequenceStart(_, anchor, tag) if matches!(key.kind, KeyKind::List(_) | KeyKind::NoneOrList(_)) => {
                 self.bare(anchor, tag.is_some(), at)?;
                 return Ok((self.list(key, at)?, at));
+            }
+            Event::MappingStart(_, anchor, tag) if ages::takes_ages(key) => {
+                self.bare(anchor, tag.is_some(), at)?;
+                return Ok((self.ages(key, at)?, at));
             }
             Event::Alias(_) => return self.unsupported(at, "an alias"),
             Event::SequenceStart(..) => "a list",
@@ -213,6 +227,41 @@ impl<'t> YamlReader<'t> {
             Ok(()) => Ok(value),
             Err(misfit) => Err(refusal(key, misfit, value.to_yaml(), self.location(start))),
         }
+    }
+
+    /// Reads the ages over steps of a mapping that starts at `start`.
+    fn ages(&mut self, key: &'static Key, start: LineColumn) -> Result<KeyValue, ConfigError> {
+        let mut text = String::new();
+        // a step and an age, in turns
+        for separator in [':', ','].into_iter().cycle() {
+            let (event, at) = self.next()?;
+            let fits = match event {
+                Event::Scalar(scalar, _, anchor, tag) => {
+                    self.bare(anchor, tag.is_some(), at)?;
+                    text.push_str(&scalar);
+                    text.push(separator);
+                    text.len() <= ages::MAX_TEXT && !scalar.contains([':', ','])
+                }
+                Event::MappingEnd => break,
+                Event::Alias(_) => return self.unsupported(at, "an alias"),
+                _ => false,
+            };
+            if !fits {
+                let nested = "a mapping of more than numbers".to_string();
+                return Err(refusal(key, ValueFault::WrongType, nested, self.location(at)));
+            }
+        }
+        let (text, key) = (text.trim_end_matches(','), ages::schedule());
+        let written = error::shown(&format!("{{{text}}}"));
+        let parsed = key.kind.parse(text, false);
+        parsed.map_err(|_| {
+            refusal(
+                key,
+                ValueFault::OutOfRange { nearest: None },
+                written,
+                self.location(start),
+            )
+        })
     }
 
     /// Makes sure that nothing follows the mapping.

@@ -1,5 +1,6 @@
 //! Blueprints: everything that environments of one configuration share.
 
+mod ages;
 mod options;
 mod settled;
 mod surface;
@@ -24,6 +25,7 @@ use crate::physics::{Engine, Params, Shared, State};
 use crate::render::{RenderError, RendererPool};
 use crate::sensors::transform::Sense;
 use crate::sensors::{Proprioception, SkinLayout, Vestibular};
+use ages::AgeCache;
 use settled::{SettledScene, make_skin, task_model};
 use surface::SkinAndScenery;
 
@@ -57,6 +59,7 @@ pub struct Blueprint {
     /// Identity, model and parameters before a program changed the model.
     origin: Arc<UnchangedModel>,
     surface: SkinAndScenery,
+    ages: AgeCache,
 }
 
 /// Constant tables derived from configuration and model. Environments share them, because copies would compete for the caches.
@@ -137,7 +140,9 @@ impl Blueprint {
     /// # Errors
     /// An invalid configuration, assets that do not load, a scene that the engine cannot simulate or that diverges, and errors of the
     /// task.
-    pub fn with(config: Config, options: BlueprintOptions) -> Result<Self, EnvError> {
+    pub fn with(mut config: Config, options: BlueprintOptions) -> Result<Self, EnvError> {
+        // MIMo begins at the first age of his schedule
+        config.age = config.age.or(config.age_schedule.at(0, config.age_grid));
         // fields of a configuration are public, and what follows relies on their bounds
         config.validate()?;
         if config.renderer == RendererKind::Wgpu && cfg!(not(feature = "wgpu")) {
@@ -168,7 +173,7 @@ impl Blueprint {
         if blueprint.config.vision_active {
             blueprint.scenery()?;
         }
-        Ok(blueprint)
+        Ok(blueprint.keeping_ages())
     }
 
     /// Binds the task to a model and lets it settle the scene.
@@ -206,6 +211,7 @@ impl Blueprint {
             init_qvel: Arc::new(settled.qvel),
             params,
             surface,
+            ages: AgeCache::default(),
         })
     }
 

@@ -79,6 +79,7 @@ impl<'a> ManualControl<'a> {
         let actions = actions.chunks_exact(len.max(1));
         // all are checked before the first acts, so that a bad one changes nothing
         actions.clone().try_for_each(|action| env.check_action(action))?;
+        env.grow()?;
         env.end_episode();
         let mut scene = env.play().scene;
         scene.restart()?;

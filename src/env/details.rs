@@ -21,6 +21,8 @@ pub struct InfoDetails {
     /// Both ways to count hands in view, for the behavior `hand_regard`. [`BehaviorInfo`](crate::env::BehaviorInfo) holds one of them, by
     /// [`Compat`](crate::config::Compat).
     pub regards: Option<RegardCounts>,
+    /// Age of MIMo's body, months, with an [`age_schedule`](crate::Config::age_schedule).
+    pub age: Option<f64>,
     /// How often each reflex acted, with [`reflexes`](crate::Config::reflexes). `None` right after a reset or a restored snapshot.
     pub reflexes: Option<ReflexShares>,
 }
@@ -63,7 +65,7 @@ impl InfoDetails {
             parts.each_mut().into_iter().for_each(Vec::clear);
         }
         (self.gaze_angles, self.vision_age, self.regards) = (None, None, None);
-        self.reflexes = None;
+        (self.reflexes, self.age) = (None, None);
     }
 
     /// Updates the names from the geoms that each hand has touched, if the behavior lists them. The lists have grown or been cleared.

@@ -11,6 +11,8 @@ use crate::spaces::NumpyRng;
 pub(super) struct Episode {
     /// Number of steps done.
     pub steps: u64,
+    /// Number of steps of all earlier episodes.
+    pub earlier_steps: u64,
     /// Whether a step may follow: there was a reset, and nothing has diverged since.
     pub ready: bool,
     /// Whether information continues from episode to episode.
@@ -30,11 +32,12 @@ impl Env {
     /// [`seed_action_space`](crate::env::ManualControl::seed_action_space).
     ///
     /// # Errors
-    /// The simulation diverged.
+    /// The simulation diverged; errors of another age by [`Config::age_schedule`](crate::Config::age_schedule).
     pub fn reset(&mut self, seed: Option<u64>) -> Result<Observation<'_>, EnvError> {
         if let (Some(seed), Compat::Api) = (seed, self.config().compat) {
             self.rng = NumpyRng::seed(seed);
         }
+        self.grow()?;
         self.end_episode();
         let StagedTask { mut scene, task, .. } = self.play();
         task.reset(&mut scene)?;
@@ -52,7 +55,9 @@ impl Env {
     pub(super) fn end_episode(&mut self) -> u64 {
         self.episode.ready = false;
         self.senses.forget_picture();
-        std::mem::take(&mut self.episode.steps)
+        let steps = std::mem::take(&mut self.episode.steps);
+        self.episode.earlier_steps += steps;
+        steps
     }
 
     pub(super) fn begin_episode(&mut self) -> Result<(), EnvError> {
@@ -71,6 +76,7 @@ impl Env {
         // after the start actions of the reset, which under `compat: reference` have passed through it
         self.action_delay.rest();
         self.senses.reset(self.phase());
+        self.date_body();
         self.episode.ready = true;
         self.sense()?;
         // for the achieved goal of the first observation; the reward that comes with it is dropped

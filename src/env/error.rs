@@ -116,6 +116,26 @@ pub enum EnvError {
         /// Quantity that would be wrong.
         what: &'static str,
     },
+    /// A program changes what a MIMo who grows by a schedule would lose at the next age.
+    #[error(
+        "MIMo grows by `age_schedule`, which makes his model anew at each age, so a program cannot change his {what}: leave the schedule out"
+    )]
+    Schedule {
+        /// The subject of the change.
+        what: &'static str,
+    },
+    /// The spaces at an age of the schedule are not those of before.
+    #[error("MIMo cannot grow to {age} months by `age_schedule`: {what} would be {after} instead of {before}")]
+    Spaces {
+        /// The age, months.
+        age: f64,
+        /// The space.
+        what: String,
+        /// Its shape or bounds until now.
+        before: String,
+        /// Its shape or bounds at the age.
+        after: String,
+    },
     /// `step` before the first `reset`.
     #[error("call reset before step")]
     NotReset,

@@ -150,6 +150,7 @@ impl InfoDetails {
         let angles = self
             .gaze_angles
             .map(|angles| ("gaze_angles", InfoValue::Angles(angles)));
+        let body_age = self.age.map(|age| ("age", InfoValue::Number(age)));
         let age = self.vision_age.map(|age| ("vision_age", InfoValue::Number(age)));
         let regards = self.regards.map(|RegardCounts { page, kit }| {
             [
@@ -166,6 +167,7 @@ impl InfoDetails {
             .flatten()
             .chain(angles)
             .chain(age)
+            .chain(body_age)
             .chain(regards.into_iter().flatten())
             .chain(reflexes)
     }

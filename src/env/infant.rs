@@ -69,6 +69,11 @@ pub enum InfantError {
     /// The configuration asks for an engine that cannot be coupled.
     #[error("`engine: rapier` cannot be coupled with a world: leave it out, or use Bridge")]
     Engine,
+    /// The configuration lets MIMo grow.
+    #[error(
+        "MIMo cannot grow by `age_schedule` in a world: the bodies that stand for those of the world belong to one model"
+    )]
+    Growing,
 }
 
 impl Infant {
@@ -89,6 +94,9 @@ impl Infant {
     ) -> Result<Self, InfantError> {
         if config.engine == EngineKind::Rapier {
             return Err(InfantError::Engine);
+        }
+        if !config.age_schedule.is_empty() {
+            return Err(InfantError::Growing);
         }
         let mut config = config;
         if !matches!(config.scene, crate::config::Scene::File(_)) {

@@ -46,7 +46,8 @@ impl MimoMut<'_> {
     /// the generator of random choices, added transforms and the probe remain. Names and ids are the same at every age.
     ///
     /// # Errors
-    /// Those of [`Blueprint::with_age`](crate::Blueprint::with_age), which change nothing.
+    /// Those of [`Blueprint::with_age`](crate::Blueprint::with_age); [`EnvError::Schedule`] if MIMo grows by a schedule. They change
+    /// nothing.
     pub fn set_age(&mut self, age: Option<f64>) -> Result<(), EnvError> {
         let grown = self.env.grown(age)?;
         self.env.become_grown(grown);
@@ -86,6 +87,9 @@ impl Env {
 
     /// Makes an environment of the same configuration at another age.
     pub(crate) fn grown(&self, age: Option<f64>) -> Result<Self, EnvError> {
+        if self.grows() {
+            return Err(EnvError::Schedule { what: "age" });
+        }
         self.blueprint.with_age(age)?.env()
     }
 
@@ -123,6 +127,7 @@ impl Env {
             grown.share();
         }
         grown.episode.accumulate = self.episode.accumulate;
+        grown.episode.earlier_steps = self.lifetime_steps();
         grown.senses.vision_deferred = self.senses.vision_deferred;
         grown.senses_mut().set_vision_threads(self.senses.vision_threads());
         grown.senses.take_added(&mut self.senses);

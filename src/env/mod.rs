@@ -13,6 +13,7 @@ mod episode;
 pub(crate) mod error;
 mod eyes;
 mod fields;
+mod growing;
 #[cfg(feature = "rapier")]
 mod infant;
 pub(crate) mod info;
@@ -77,6 +78,7 @@ pub use task::{
 pub(crate) use viewer::room_camera;
 pub use viewer::{ViewFrom, Viewer};
 
+pub(crate) use growing::space_difference;
 pub(crate) use physics::ScratchUse;
 
 use crate::actuation::Reflexes;
@@ -283,6 +285,11 @@ impl Env {
     fn date_pictures(&mut self) {
         let age = self.senses.vision_age();
         self.info.details.vision_age = age.map(|steps| steps as f64 * self.blueprint.dt());
+    }
+
+    /// Records the age of a MIMo who grows.
+    fn date_body(&mut self) {
+        self.info.details.age = self.config().age.filter(|_| self.grows());
     }
 
     fn sense(&mut self) -> Result<(), EnvError> {

@@ -161,6 +161,9 @@ impl ModelMut<'_> {
     /// change nothing.
     pub fn change(self, edit: impl FnOnce(&mut Arrays)) -> Result<(), EnvError> {
         let env = self.env;
+        if env.grows() {
+            return Err(EnvError::Schedule { what: "model" });
+        }
         env.physics.check_shape()?;
         let before = env.blueprint.model_arrays();
         let mut after = before.clone();
@@ -221,6 +224,9 @@ impl ModelMut<'_> {
     /// [`ModelChangeError::Fixed`] for other changes, and textures that cannot be read. They change nothing.
     pub fn paint(self, edit: impl FnOnce(&mut Arrays)) -> Result<(), EnvError> {
         let env = self.env;
+        if env.grows() {
+            return Err(EnvError::Schedule { what: "look" });
+        }
         let painted = env.blueprint.model().edited(edit);
         let mut rest = Arrays::clone(&painted);
         let now: &Arrays = env.blueprint.model();

@@ -64,6 +64,7 @@ impl Env {
         self.track();
         self.count_reflexes();
         self.date_pictures();
+        self.date_body();
         let steps = &mut self.episode.steps;
         self.info.steps = match self.blueprint.config().compat {
             Compat::Api => *steps + 1,

@@ -155,7 +155,8 @@ impl Env {
         Snapshot { bytes }
     }
 
-    /// Restores a snapshot of this environment, or of another with the same configuration and scene.
+    /// Restores a snapshot of this environment, or of another with the same configuration and scene. A MIMo who grows by a schedule gets the
+    /// age of the snapshot.
     ///
     /// Touch, pain, images, poses and contacts are not in a snapshot. The next step or [`refresh`](crate::env::ManualControl::refresh)
     /// computes them. Until then [`Env::observation`] has no touch, pain and images; its other parts are the original's.
@@ -165,6 +166,16 @@ impl Env {
     #[doc(alias = "mj_setState")]
     pub fn restore(&mut self, snapshot: &Snapshot) -> Result<(), SnapshotError> {
         let (content, keys) = snapshot.content()?;
+        let before = self.grow_for(snapshot, keys);
+        let restored = self.restore_here(snapshot, content, keys);
+        if let (Err(_), Some(before)) = (&restored, before) {
+            self.shrink_back(before);
+        }
+        restored
+    }
+
+    /// Restores a snapshot of MIMo at his current age.
+    fn restore_here(&mut self, snapshot: &Snapshot, content: &[u8], keys: &str) -> Result<(), SnapshotError> {
         if snapshot.fingerprint() != Some(self.blueprint.identity().fingerprint) {
             return Err(self.blueprint.identity().refuse(keys, SnapshotError::OtherEnvironment));
         }
@@ -222,6 +233,7 @@ impl Env {
         self.info.steps = info_steps;
         self.info.behavior = behavior;
         self.info.details.clear();
+        self.date_body();
         self.task.inform(TaskEvent::Restored, &mut self.info);
         let reward = self.episode.reward;
         self.conclude();

@@ -46,6 +46,9 @@ pub enum EpisodeError {
          parallel; use --jobs 1"
     )]
     Jobs,
+    /// Parallel episodes of a MIMo who grows.
+    #[error("MIMo grows by `age_schedule` from episode to episode, so episodes cannot run in parallel; use --jobs 1")]
+    Growing,
     /// The environment returned an error.
     #[error("episode {episode}: {source}")]
     Env {
@@ -161,6 +164,9 @@ pub fn run_episodes_watched<'o>(
     let jobs = plan.parallel();
     if plan.jobs > 1 && plan.episodes > 1 && blueprint.config().compat == Compat::Reference {
         return Err(EpisodeError::Jobs);
+    }
+    if plan.jobs > 1 && plan.episodes > 1 && !blueprint.config().age_schedule.is_empty() {
+        return Err(EpisodeError::Growing);
     }
     let (next, failed) = (AtomicU64::new(0), AtomicBool::new(false));
     let done: Mutex<Vec<(u64, Info)>> = Mutex::default();

@@ -66,8 +66,13 @@ impl RunVector {
             autoreset: AutoresetMode::Disabled,
             ..options
         };
-        let vector = VectorEnv::new(blueprint, n, options)?;
+        let mut vector = VectorEnv::new(blueprint, n, options)?;
         let log = open_training_log(blueprint, resume)?;
+        // each MIMo who grows goes on at the age that he has reached
+        let each = log.totals().steps / n as u64;
+        for env in 0..n {
+            vector.env_mut(env)?.set_earlier_steps(each);
+        }
         let config = blueprint.config();
         Ok(Self {
             log,

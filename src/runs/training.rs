@@ -162,8 +162,10 @@ pub fn make_env(config: Config, training: bool) -> Result<RunEnv, RunError> {
 /// # Errors
 /// Files that cannot be written; when resuming, a log that is damaged or of another behavior, or a scene with other bodies.
 pub fn start_training(blueprint: &Blueprint, resume: bool) -> Result<RunEnv, RunError> {
-    let env = blueprint.env()?;
+    let mut env = blueprint.env()?;
     let log = open_training_log(blueprint, resume)?;
+    // a MIMo who grows goes on at the age that he has reached
+    env.set_earlier_steps(log.totals().steps);
     Ok(RunEnv::new(env, Some(log)))
 }
 

@@ -20,6 +20,8 @@ pub struct Infos<'a> {
     pub kit_regards: Option<&'a [u64]>,
     /// Age of the pictures of the eyes (N), s, with a [`vision_rate`](crate::Config::vision_rate).
     pub vision_age: Option<&'a [f64]>,
+    /// Age of each MIMo's body (N), months, with an [`age_schedule`](crate::Config::age_schedule).
+    pub age: Option<&'a [f64]>,
     /// The reflexes that any environment has.
     pub reflex_names: &'a [Reflex],
     /// How often each of them acted, (N, names), 0 to 1: see [`ReflexShares`](crate::env::ReflexShares). `None` without reflexes.
@@ -39,6 +41,7 @@ pub(super) struct InfoRows {
     /// The counters by `compat`, the page's, and the kit's.
     regards: [Vec<u64>; 3],
     ages: Vec<f64>,
+    body_ages: Vec<f64>,
     reflex_names: Vec<Reflex>,
     reflexes: Vec<f64>,
     outcomes: Vec<Outcome>,
@@ -57,6 +60,7 @@ impl InfoRows {
             touches: vec![0; 2 * n * layout.geoms.unwrap_or_default()],
             regards: std::array::from_fn(|_| vec![0; 4 * n * usize::from(layout.regards)]),
             ages: vec![0.0; n * usize::from(layout.ages)],
+            body_ages: vec![0.0; n * usize::from(layout.grows)],
             outcomes: vec![Outcome::default(); n * usize::from(layout.terms.is_some())],
             terms: vec![0.0; n * layout.terms.unwrap_or_default()],
         }
@@ -80,6 +84,9 @@ impl InfoRows {
         if self.layout.ages {
             // a reset samples
             self.ages[row] = info.details.vision_age.unwrap_or_default();
+        }
+        if self.layout.grows {
+            self.body_ages[row] = info.details.age.unwrap_or_default();
         }
         let reflexes = self.reflexes.chunks_exact_mut(self.reflex_names.len().max(1)).nth(row);
         for (share, &reflex) in reflexes.into_iter().flatten().zip(&self.reflex_names) {
@@ -111,6 +118,7 @@ impl InfoRows {
             page_regards: self.layout.regards.then(|| &self.regards[1][..4 * n]),
             kit_regards: self.layout.regards.then(|| &self.regards[2][..4 * n]),
             vision_age: self.layout.ages.then(|| &self.ages[..n]),
+            age: self.layout.grows.then(|| &self.body_ages[..n]),
             reflex_names: &self.reflex_names,
             reflexes: (!self.reflexes.is_empty()).then(|| &self.reflexes[..n * self.reflex_names.len()]),
             outcomes: self.layout.terms.map(|_| &self.outcomes[..n]),

@@ -19,6 +19,8 @@ pub(super) struct RowLayout {
     pub regards: bool,
     /// Whether the eyes have a rate of their own.
     pub ages: bool,
+    /// Whether any MIMo grows by a schedule.
+    pub grows: bool,
     /// Which reflexes any environment has.
     pub reflexes: [bool; Reflex::ALL.len()],
     /// Number of terms of the rewards, if the tasks report outcomes.
@@ -35,6 +37,7 @@ impl RowLayout {
             layout.sensors = env.senses().touch().map_or(0, |touch| touch.layout().len());
             layout.regards |= env.info().behavior.regards().is_some();
             layout.ages |= env.config().vision_active && env.config().vision_rate.is_some();
+            layout.grows |= env.grows();
             for reflex in env.reflexes() {
                 layout.reflexes[reflex as usize] = true;
             }

@@ -41,7 +41,7 @@ pub use options::{AutoresetMode, ClippedThreads, ThreadLimit, VectorOptions};
 pub use seeds::Seeds;
 
 use crate::config::RendererKind;
-use crate::env::{Blueprint, Env, EnvError};
+use crate::env::{Blueprint, Env, EnvError, space_difference};
 use crate::spaces::{BoxSpace, ObservationSpace};
 use crate::threads::ThreadPool;
 use infos::InfoRows;
@@ -282,7 +282,7 @@ fn alike(first: Env, n: usize, make: impl Fn(usize) -> Result<Env, VectorError>)
     let mut envs = vec![first];
     for env in 1..n {
         let made = make(env)?;
-        if let Some((what, expected, found)) = difference(envs[0].action_space(), &spaces, &made) {
+        if let Some((what, expected, found)) = space_difference(envs[0].action_space(), &spaces, &made) {
             return Err(VectorError::Spaces {
                 env,
                 what,
@@ -301,31 +301,4 @@ fn of(env: usize) -> impl FnOnce(EnvError) -> VectorError {
         env,
         source: Box::new(source),
     }
-}
-
-/// A difference between the spaces of an environment and those of others: the space, theirs, its own.
-type SpaceDifference = (String, String, String);
-
-/// Returns how an environment differs from those with which it is to share arrays.
-fn difference(a: &BoxSpace, spaces: &[ObservationSpace], env: &Env) -> Option<SpaceDifference> {
-    let b = env.action_space();
-    if a.len() != b.len() {
-        let shapes = [a, b].map(|space| format!("[{}]", space.len()));
-        let [expected, found] = shapes;
-        return Some(("the action space".to_string(), expected, found));
-    }
-    let bounds = |s: &BoxSpace, k: usize| (s.low()[k], s.high()[k]);
-    if let Some(k) = (0..a.len()).find(|&k| bounds(a, k) != bounds(b, k)) {
-        let [expected, found] = [a, b].map(|space| format!("{:?}", bounds(space, k)));
-        return Some((format!("the bounds of action[{k}]"), expected, found));
-    }
-    let own = env.observation_space();
-    let describe = |s: Option<&ObservationSpace>| match s {
-        Some(s) => format!("{:?} of {:?} in [{}, {}]", s.shape, s.dtype, s.low, s.high),
-        None => "none".to_string(),
-    };
-    spaces.iter().chain(&own).map(|s| s.key).find_map(|key| {
-        let [a, b] = [spaces, &own].map(|spaces| spaces.iter().find(|s| s.key == key));
-        (a != b).then(|| (format!("the observation {key:?}"), describe(a), describe(b)))
-    })
 }

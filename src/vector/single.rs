@@ -1,9 +1,9 @@
 //! One environment of a vector.
 
 use super::slot::Slot;
-use super::{VectorEnv, VectorError, difference, of};
+use super::{VectorEnv, VectorError, of};
 use crate::config::FacialExpression;
-use crate::env::{Env, Info, Observation, Snapshot};
+use crate::env::{Env, Info, Observation, Snapshot, space_difference};
 use crate::mimo::{LockReport, LockTarget};
 use crate::spaces::{BoxSpace, ObservationSpace};
 
@@ -81,7 +81,7 @@ impl VectorEnv {
     /// [`VectorError::InFlight`]. They change nothing.
     pub fn set_age(&mut self, env: usize, age: Option<f64>) -> Result<(), VectorError> {
         let grown = self.env(env)?.grown(age).map_err(of(env))?;
-        match difference(&self.action_space, &self.observation_space, &grown) {
+        match space_difference(&self.action_space, &self.observation_space, &grown) {
             Some((what, expected, found)) => Err(VectorError::Grown {
                 env,
                 what,

@@ -130,6 +130,12 @@ impl Slot {
     /// Resets the environment in the memory of the thread.
     fn reset(&mut self, seed: Option<u64>) {
         self.started = true;
+        // before the environment works in the memory of the thread, which is that of a body
+        if let Err(e) = self.env.grow() {
+            self.failure.get_or_insert(e);
+            self.env.by_hand().end_episode();
+            return;
+        }
         let copy = self.env.before_reset();
         let mut env = self.env.work(ScratchUse::Reset);
         let reset = env.reset(seed).map(drop).and_then(|()| env.check_reset(copy, seed));
@@ -142,7 +148,9 @@ impl Slot {
     fn revive(&mut self) -> Result<(), EnvError> {
         if self.panicked.is_some() {
             let deferred = self.env.senses().vision_is_deferred();
+            let life = self.env.lifetime_steps();
             self.env = make(self.env.blueprint())?;
+            self.env.set_earlier_steps(life);
             self.env.senses_mut().defer_vision(deferred);
             self.panicked = None;
         }
@@ -204,6 +212,7 @@ fn copy_info(from: &Info, to: &mut Info) {
     }
     to.details.gaze_angles = from.details.gaze_angles;
     to.details.vision_age = from.details.vision_age;
+    to.details.age = from.details.age;
     to.details.reflexes = from.details.reflexes;
     to.details.regards = from.details.regards;
     match &from.details.touched_parts {

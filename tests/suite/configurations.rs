@@ -274,6 +274,8 @@ fn no_key_is_without_effect() {
             "frame_skip" => &["2", "5"],
             "seed" => &["1", "18446744073709551615"],
             "age" => &["0", "24"],
+            "age_schedule" => &["{0: 3}"],
+            "age_grid" => continue, // with a schedule, in the tests of the configuration
             "strength_age" => &["3"],
             "strength" => &["infant"],
             _ if name.starts_with("strength_") => continue, // with `strength: infant`, in `milestones`

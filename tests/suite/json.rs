@@ -91,6 +91,7 @@ impl Source {
                 reflexes: None,
                 touched_parts: (self.below(3) > 0).then_some(touched_parts),
                 gaze_angles: (self.below(3) > 0).then_some(gaze_angles),
+                age: (self.below(3) > 0).then(|| self.number()),
                 vision_age: (self.below(3) > 0).then(|| self.number()),
                 regards: None,
             },

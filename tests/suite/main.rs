@@ -15,6 +15,7 @@ mod caregiver;
 mod composed;
 mod configurations;
 mod eyes_at_once;
+mod growing;
 #[cfg(feature = "rapier")]
 mod infant;
 #[cfg(feature = "eval")]

@@ -124,6 +124,17 @@ fn values(kind: KeyKind) -> Values {
                 .into(),
             )
         }
+        KeyKind::NoneOrAges { max } => (
+            ["none", "~", "{0: 1, 500000: 6}", "\n  0: 3.5\n  10: 1", "'0: 2'"]
+                .map(String::from)
+                .into(),
+            &["one", "5", "true", "[1]"],
+            ["{}", "{1: 1}", "{0: 1, 0: 2}", "{0: a}", "'0: 1, 3'"]
+                .map(String::from)
+                .into_iter()
+                .chain([format!("{{0: {}}}", max + 1.0)])
+                .collect(),
+        ),
         KeyKind::List(names) => {
             let all = format!("[{}]", names.join(", "));
             let good = names
@@ -202,6 +213,8 @@ fn every_key_takes_what_it_says_and_nothing_else() {
                 ("Growth", name) if name.starts_with("strength_") && name != "strength_age" => {
                     "age: 3\nstrength: infant\n"
                 }
+                ("Growth", "age_schedule") => "touch_active: false\n",
+                ("Growth", "age_grid") => "touch_active: false\nage_schedule: '0: 1, 9: 3'\n",
                 // the other keys of growth change MIMo at an age
                 ("Growth", _) => "age: 3\n",
                 ("Pain", _) => "pain_active: true\n",

@@ -1,11 +1,12 @@
-//! Blueprints that differ in one thing: actuation model, age, face, numbers of the model.
+//! Blueprints that differ in one thing: actuation model, face, numbers of the model.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
+use super::ages::AgeCache;
 use super::settled::task_model;
 use super::surface::SkinAndScenery;
-use super::{Blueprint, BlueprintOptions, SharedTables};
+use super::{Blueprint, SharedTables};
 use crate::config::{ActuationModel, Config, FacialExpression};
 use crate::env::EnvError;
 use crate::env::engines::Engines;
@@ -38,27 +39,7 @@ impl Blueprint {
             assets: scene_assets(&config, self.surface.given.clone())?,
             ..self.surface.clone()
         };
-        Self::settled(config, self.task.clone_task(), model, surface)
-    }
-
-    /// Returns a blueprint of the same configuration with MIMo at another age, months; `None` for the original proportions.
-    ///
-    /// Names and ids remain. So do the spaces, except for the length of touch, which follows the size of the body unless
-    /// [`Config::touch_grows`].
-    ///
-    /// # Errors
-    /// As [`Blueprint::with`].
-    pub fn with_age(&self, age: Option<f64>) -> Result<Self, EnvError> {
-        let config = Config {
-            age,
-            ..Config::clone(&self.config)
-        };
-        let options = BlueprintOptions {
-            // the clone is bound to the old body, and binds again to the new one
-            task: Some(self.task.clone_task()),
-            assets: self.surface.given.clone(),
-        };
-        Self::with(config, options)
+        Ok(Self::settled(config, self.task.clone_task(), model, surface)?.keeping_ages())
     }
 
     /// Returns a blueprint of the same configuration in which MIMo makes another face. Snapshots of both are exchangeable.
@@ -76,6 +57,8 @@ impl Blueprint {
         let model = self.model.edited(|arrays| arrays.materials.clone_from(&made.materials));
         let blueprint = Self {
             config: Arc::new(config),
+            // those of other ages have the other face
+            ages: AgeCache::default(),
             ..self.clone()
         };
         blueprint.with_look(model)

@@ -150,7 +150,7 @@ impl Snapshot {
         Ok((numbers, keys))
     }
 
-    pub(super) fn fingerprint(&self) -> Option<u64> {
+    pub(crate) fn fingerprint(&self) -> Option<u64> {
         ByteReader(self.bytes.get(MAGIC.len() + 8..HEADER)?).u64()
     }
 }

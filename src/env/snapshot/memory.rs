@@ -24,6 +24,10 @@ impl Env {
             clock.save(&mut part);
             append_part(out, &mut part);
         }
+        if self.grows() {
+            part.extend_from_slice(&self.episode.earlier_steps.to_le_bytes());
+            append_part(out, &mut part);
+        }
     }
 
     /// Restores what [`Env::save_memory`] wrote. Other data change nothing.
@@ -35,6 +39,12 @@ impl Env {
         }
         self.try_load(&before);
         Err(damaged("the memory of its senses does not fit"))
+    }
+
+    /// Restores the number of steps before the episode.
+    fn load_life(&mut self, bytes: &[u8]) -> bool {
+        let steps = bytes.try_into().map(u64::from_le_bytes);
+        steps.is_ok_and(|steps| self.set_earlier_steps(steps))
     }
 
     fn try_load(&mut self, mut bytes: &[u8]) -> bool {
@@ -52,6 +62,7 @@ impl Env {
         let reacts = reflexes.is_none_or(|r| take_part(bytes).is_some_and(|part| r.load(part)));
         let mut clocks = senses.clocks.iter_mut().flatten();
         let timed = clocks.all(|clock| take_part(bytes).is_some_and(|part| clock.load(part)));
-        sensed && reacts && timed && bytes.is_empty()
+        let counted = !self.grows() || take_part(bytes).is_some_and(|part| self.load_life(part));
+        sensed && reacts && timed && counted && bytes.is_empty()
     }
 }

@@ -93,10 +93,11 @@ impl BenchmarkPlan {
                 .to_string_lossy()
                 .into_owned();
             for &age in &self.ages {
-                let config = Config {
-                    age: age.or(config.age),
-                    ..config.clone()
-                };
+                let mut config = config.clone();
+                if age.is_some() {
+                    // an age of the plan takes the place of a schedule
+                    config.keep_age(age);
+                }
                 for policy in &self.policies {
                     for seed in 0..self.seeds {
                         out.push(BenchmarkJob::new(&stem, &config, policy, seed, self));

@@ -122,7 +122,11 @@ impl Record {
         let described = self.manifest.episodes.iter().find(|e| e.episode == episode);
         let age = described.and_then(|e| e.age).unwrap_or(self.manifest.configuration.age);
         if env.config().age != age {
-            env.mimo_mut().set_age(age)?;
+            if env.grows() {
+                env.grow_to(age)?;
+            } else {
+                env.mimo_mut().set_age(age)?;
+            }
         }
         let mut changes = Vec::new();
         for array in npz.arrays() {

@@ -36,7 +36,9 @@ fn describe(key: &Key) -> JsValue {
         KeyKind::List(names) | KeyKind::NoneOrList(names) => {
             ("list", list(names.iter().copied()), JsValue::NULL, JsValue::NULL)
         }
-        KeyKind::Text | KeyKind::Document => ("text", JsValue::NULL, JsValue::NULL, JsValue::NULL),
+        KeyKind::Text | KeyKind::Document | KeyKind::NoneOrAges { .. } => {
+            ("text", JsValue::NULL, JsValue::NULL, JsValue::NULL)
+        }
     };
     object([
         ("name", key.name.into()),
