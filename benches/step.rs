@@ -7,7 +7,7 @@ use std::hint::black_box;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Instant;
 
-use babybench::config::{Behavior, BodyParts, Scene};
+use babybench::config::{ActuationModel, AgeSchedule, Behavior, BodyParts, Reflex, ReflexSet, Scene};
 use babybench::physics::Stage;
 use babybench::{Blueprint, Config, Env};
 
@@ -216,6 +216,84 @@ fn anatomy(bench: &mut Bench, name: &str, config: &Config) {
     println!("parts/{name}: on average {contacts:.1} contacts, {rows:.1} rows, {iterations:.1} Newton iterations");
 }
 
+/// Measures resets at which MIMo grows: to ages that are compiled first, and to the same ages again.
+fn growth(bench: &mut Bench, name: &str, config: &Config) {
+    if !bench.wants(&format!("growth/{name}")) {
+        return;
+    }
+    // an episode of one step for each age
+    let ages: Vec<(u64, f64)> = (0..60).map(|k| (k, 1.0 + 0.25 * (k % 20) as f64)).collect();
+    let mut env = Env::new(Config {
+        age_schedule: AgeSchedule::new(ages).expect("rising steps"),
+        touch_grows: true,
+        max_episode_steps: 1,
+        ..config.clone()
+    })
+    .expect("available");
+    let action = vec![0.0; env.action_space().len()];
+    let (mut took, mut base) = ([Vec::new(), Vec::new()], Vec::new());
+    for k in 0..60 {
+        let start = Instant::now();
+        env.reset(Some(k)).expect("no divergence");
+        let ns = start.elapsed().as_nanos() as f64;
+        let same = Instant::now();
+        env.reset(Some(k)).expect("no divergence");
+        // the reset itself is not growth
+        took[usize::from(k >= 20)].push(ns - same.elapsed().as_nanos() as f64);
+        base.push(bench.baseline.time());
+        env.step(&action).expect("no divergence");
+    }
+    let [first, again] = took;
+    report(&format!("growth/{name}/first"), first, base.clone());
+    report(&format!("growth/{name}/again"), again, base);
+}
+
+/// Measures what all reflexes add to a step. Their gain is so small that both environments move alike.
+fn reflexes(bench: &mut Bench, model: ActuationModel) {
+    const STEPS: usize = 20;
+    let name = format!("reflexes/{model}");
+    if !bench.wants(&name) {
+        return;
+    }
+    let mut config = Config {
+        behavior: Behavior::SelfTouch,
+        age: Some(1.0),
+        actuation_model: model,
+        vision_active: false,
+        touch_active: false,
+        ..Config::default()
+    };
+    let without = Env::new(config.clone()).expect("available");
+    config.reflexes.set = ReflexSet::new(Reflex::ALL.iter().copied());
+    config.reflexes.gain = 1e-9;
+    let mut envs = [without, Env::new(config).expect("available")];
+    let (mut action, mut added, mut ratios) = (Vec::new(), Vec::new(), Vec::new());
+    for sample in 0..300 {
+        if sample % 10 == 0 {
+            for env in &mut envs {
+                env.reset(Some(sample)).expect("no divergence");
+            }
+        }
+        envs[0].sample_action(&mut action);
+        let mut took = [0.0; 2];
+        // by turns, so that neither is always the first
+        for which in [sample as usize % 2, 1 - sample as usize % 2] {
+            let start = Instant::now();
+            for _ in 0..STEPS {
+                black_box(envs[which].step(&action).expect("no divergence"));
+            }
+            took[which] = start.elapsed().as_nanos() as f64 / STEPS as f64;
+        }
+        added.push(took[1] - took[0]);
+        ratios.push(took[1] / took[0]);
+    }
+    let ([low, mid, high], ratio) = (quartiles(added).map(human), quartiles(ratios));
+    println!(
+        "{name:52} {mid:>9}  ({low} .. {high})   {:8.3} steps without ({:.3} .. {:.3})",
+        ratio[1], ratio[0], ratio[2]
+    );
+}
+
 fn main() {
     // cargo passes --bench
     let filter = std::env::args().skip(1).find(|a| !a.starts_with('-'));
@@ -234,6 +312,10 @@ fn main() {
         let config = example(text);
         environment(&mut bench, name, &config);
         anatomy(&mut bench, name, &config);
+        growth(&mut bench, name, &config);
+    }
+    for &model in ActuationModel::ALL {
+        reflexes(&mut bench, model);
     }
     // everything moves: the most expensive scene
     let config = Config {

@@ -3,7 +3,7 @@
 use super::contacts::{Watched, side};
 use super::motors::{Motor, Motors};
 use super::tables::Built;
-use super::{LoopInput, MotorCommand, ReflexLoop, follow, ramp};
+use super::{LoopInput, MotorCommand, ReflexLoop};
 use crate::actuation::ActuationError;
 use crate::config::Part;
 use crate::mimo::{body_kind, reflexes};
@@ -145,18 +145,12 @@ impl ReflexLoop for Grasp {
     }
 
     fn act(&self, input: &mut LoopInput<'_>, commands: &mut [MotorCommand]) -> f64 {
-        let [threshold, width] = self.force;
+        input.follow_stimuli(self.force, reflexes::GRASP_TIMES);
         let mut most: f64 = 0.0;
-        for (side, level) in input.memory.iter_mut().enumerate() {
-            follow(
-                level,
-                ramp(input.stimulus[side], threshold, width),
-                reflexes::GRASP_TIMES,
-                input.h,
-            );
-            let effort = (*level * input.gain).min(1.0);
+        for (level, motors) in input.memory.iter().zip(&self.motors) {
+            let effort = (level * input.gain).min(1.0);
             if effort > 0.0 {
-                for (motor, angle) in &self.motors[side] {
+                for (motor, angle) in motors {
                     motor.pull(input.state, *angle, effort, commands);
                     // he cannot let go: his action has as little effect as the reflex is strong
                     motor.suppress(effort, commands);

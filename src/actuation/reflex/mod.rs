@@ -69,6 +69,16 @@ struct LoopInput<'a> {
     rng: &'a mut NumpyRng,
 }
 
+impl LoopInput<'_> {
+    /// Moves each remembered level towards how far its stimulus is above a threshold, in widths, with the time constants
+    /// `[rising, falling]`, s.
+    fn follow_stimuli(&mut self, [threshold, width]: [f64; 2], times: [f64; 2]) {
+        for (level, stimulus) in self.memory.iter_mut().zip(self.stimulus) {
+            follow(level, ramp(*stimulus, threshold, width), times, self.h);
+        }
+    }
+}
+
 /// The reflexes of an environment: what they share, and what they remember.
 #[derive(Clone)]
 pub(crate) struct Reflexes {
@@ -112,44 +122,28 @@ impl Reflexes {
     pub fn drive(&mut self, model: &Model, state: &mut State, actuation: &dyn Actuation, rng: &mut NumpyRng) {
         self.commands.fill(MotorCommand::default());
         let (steps, memory) = self.memory.split_at_mut(1);
-        let now = steps[0] as usize;
-        let mut rest = memory;
-        for placed in self.tables.loops() {
-            let parts = placed.split(&mut rest);
-            if placed.gain == 0.0 {
-                continue;
-            }
-            // the oldest stimulus is in the place of the next
-            let channels = placed.inner.channels();
-            let at = now % placed.delay * channels;
+        let commands = &mut self.commands;
+        self.tables.each(steps[0] as usize, memory, |placed, memory| {
             let mut input = LoopInput {
-                state,
-                stimulus: &parts.line[at..at + channels],
-                memory: parts.own,
+                state: &*state,
+                stimulus: memory.stimulus,
+                memory: memory.own,
                 gain: placed.gain,
                 h: model.opt.timestep,
-                rng,
+                rng: &mut *rng,
             };
-            parts.counts[0] = placed.inner.act(&mut input, &mut self.commands).clamp(0.0, 1.0);
-            parts.counts[1] += f64::from(u8::from(parts.counts[0] > ACTIVE));
-        }
+            memory.counts[0] = placed.inner.act(&mut input, commands).clamp(0.0, 1.0);
+            memory.counts[1] += f64::from(u8::from(memory.counts[0] > ACTIVE));
+        });
         actuation.drive(model, state, &self.action, &self.commands);
     }
 
     /// Senses a state after a physics step.
     pub fn sense(&mut self, model: &Model, state: &State) {
         let (steps, memory) = self.memory.split_at_mut(1);
-        let now = steps[0] as usize;
-        let mut rest = memory;
-        for placed in self.tables.loops() {
-            let parts = placed.split(&mut rest);
-            if placed.gain == 0.0 {
-                continue;
-            }
-            let channels = placed.inner.channels();
-            let at = now % placed.delay * channels;
-            placed.inner.sense(model, state, &mut parts.line[at..at + channels]);
-        }
+        self.tables.each(steps[0] as usize, memory, |placed, memory| {
+            placed.inner.sense(model, state, memory.stimulus);
+        });
         steps[0] += 1.0;
     }
 

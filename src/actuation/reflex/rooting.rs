@@ -3,7 +3,7 @@
 use super::contacts::Watched;
 use super::motors::{Motor, Motors};
 use super::tables::Built;
-use super::{LoopInput, MotorCommand, ReflexLoop, follow, ramp};
+use super::{LoopInput, MotorCommand, ReflexLoop};
 use crate::actuation::ActuationError;
 use crate::math::{Vec3, add_scaled, dot, sub};
 use crate::mimo::reflexes;
@@ -64,10 +64,7 @@ impl ReflexLoop for Rooting {
     }
 
     fn act(&self, input: &mut LoopInput<'_>, commands: &mut [MotorCommand]) -> f64 {
-        let [threshold, width] = reflexes::ROOTING;
-        for (level, force) in input.memory.iter_mut().zip(input.stimulus) {
-            follow(level, ramp(*force, threshold, width), reflexes::ROOTING_TIMES, input.h);
-        }
+        input.follow_stimuli(reflexes::ROOTING, reflexes::ROOTING_TIMES);
         // positive to the left
         let level = (input.memory[0] - input.memory[1]) * input.gain;
         let effort = level.abs().min(1.0);

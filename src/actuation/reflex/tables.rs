@@ -20,8 +20,8 @@ pub(super) struct PlacedLoop {
 pub(super) struct LoopMemory<'a> {
     /// How strongly it acts, and the number of steps in which it did.
     pub counts: &'a mut [f64],
-    /// Stimuli on their way.
-    pub line: &'a mut [f64],
+    /// The stimulus of this physics step. Until it is sensed, the oldest that is on its way is here.
+    pub stimulus: &'a mut [f64],
     pub own: &'a mut [f64],
 }
 
@@ -31,13 +31,16 @@ impl PlacedLoop {
         2 + self.delay * self.inner.channels() + self.inner.memory()
     }
 
-    /// Takes its memory from the front of `rest`.
-    pub fn split<'a>(&self, rest: &mut &'a mut [f64]) -> LoopMemory<'a> {
+    /// Takes its memory in physics step `now` from the front of `rest`.
+    fn split<'a>(&self, now: usize, rest: &mut &'a mut [f64]) -> LoopMemory<'a> {
         let (mine, others) = std::mem::take(rest).split_at_mut(self.memory());
         *rest = others;
         let (counts, mine) = mine.split_at_mut(2);
-        let (line, own) = mine.split_at_mut(self.delay * self.inner.channels());
-        LoopMemory { counts, line, own }
+        let channels = self.inner.channels();
+        let (line, own) = mine.split_at_mut(self.delay * channels);
+        let at = now % self.delay * channels;
+        let stimulus = &mut line[at..at + channels];
+        LoopMemory { counts, stimulus, own }
     }
 }
 
@@ -69,6 +72,16 @@ impl ReflexTables {
             }
         }
         Ok(Some(Self { loops }))
+    }
+
+    /// Calls `work` for each loop that has a gain, with its memory in physics step `now`.
+    pub(super) fn each(&self, now: usize, mut memory: &mut [f64], mut work: impl FnMut(&PlacedLoop, LoopMemory<'_>)) {
+        for placed in &self.loops {
+            let own = placed.split(now, &mut memory);
+            if placed.gain != 0.0 {
+                work(placed, own);
+            }
+        }
     }
 
     /// Returns the loops, in the order of [`Reflex::ALL`].
