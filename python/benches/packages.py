@@ -5,6 +5,7 @@ Each package has a virtual environment of its own, in which ``packages.txt`` say
     python benches/packages.py run VENVS RESULTS        # VENVS/NAME/bin/python for each package; a file in RESULTS for each
     python benches/packages.py table RESULTS docs/packages.md
 
+A run that was interrupted goes on where it ended; ``--again`` repeats what this package did, as after a change of it.
 Both runs have the same seeds and actions. That on this package starts each step from the state that MuJoCo had.
 """
 
@@ -21,163 +22,21 @@ import sys
 import time
 import traceback
 import warnings
-from collections import Counter
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+from package_envs import SEED, SOURCES, Env, flat
 
-STEPS, SEED, SECONDS = 200, 0, 90
+STEPS, SECONDS = 200, 90
 PACKAGES = ("gymnasium-robotics", "metaworld", "dm_control", "myosuite", "robosuite")
 FULL = 8191
 """All parts of MuJoCo's state (``mjtState``)."""
 SAME = 1e-9
-
-
-class Env:
-    """The interface that this script gives to the environments of all packages."""
-
-    def __init__(self, reset: Callable[[], Any], step: Callable[[Any], Any], owner: Any, low: Any, high: Any) -> None:
-        """Takes what resets and steps it; ``owner`` is looked through for its model and state."""
-        self.reset, self.step, self.owner = reset, step, owner
-        self.low, self.high = (np.clip(np.asarray(bound, np.float64), -1, 1) for bound in (low, high))
-        self.halves = False
-        """Whether a step begins with its second half, so that the first has to be done again from another state."""
-
-    @property
-    def model(self) -> Any:
-        """The model of MuJoCo."""
-        return _found(self.owner(), "model")
-
-    @property
-    def data(self) -> Any:
-        """The state of MuJoCo."""
-        return _found(self.owner(), "data")
-
-
-def _found(owner: Any, name: str) -> Any:
-    """Returns the model or the state that an environment holds, without the classes that packages wrap around it."""
-    value = getattr(owner, name)
-    for inner in ("ptr", f"_{name}"):
-        value = (
-            getattr(value, inner) if hasattr(type(value), inner) or inner in getattr(value, "__dict__", {}) else value
-        )
-    return value
-
-
-def flat(value: Any) -> list[float]:
-    """Returns the numbers of an observation."""
-    if isinstance(value, dict):
-        return [number for key in sorted(value) for number in flat(value[key])]
-    if isinstance(value, (tuple, list)):
-        return [number for part in value for number in flat(part)]
-    array = np.asarray(value)
-    return [] if array.dtype.kind not in "bifu" else [float(number) for number in array.reshape(-1)]
-
-
-def _of_gymnasium(make: Callable[[], Any], inner: tuple[str, ...] = ()) -> Env:
-    env = make()
-
-    def owner() -> Any:
-        found = env.unwrapped
-        for name in inner:
-            found = getattr(found, name, found)
-        return found
-
-    def step(action: Any) -> tuple[Any, float, bool]:
-        observation, reward, terminated, truncated, _ = env.step(action.astype(env.action_space.dtype))
-        return observation, float(reward), bool(terminated or truncated)
-
-    return Env(lambda: env.reset(seed=SEED)[0], step, owner, env.action_space.low, env.action_space.high)
-
-
-def _of_dm_control(make: Callable[[], Any]) -> Env:
-    env = make()
-    spec = env.action_spec()
-
-    def step(action: Any) -> tuple[Any, float, bool]:
-        now = env.step(action)
-        return now.observation, float(now.reward or 0), now.last()
-
-    made = Env(lambda: env.reset().observation, step, lambda: env.physics, spec.minimum, spec.maximum)
-    made.halves = True
-    return made
-
-
-def gymnasium_robotics() -> dict[str, Callable[[], Env]]:
-    """The environments that the package registers."""
-    import gymnasium
-    import gymnasium_robotics
-
-    gymnasium.register_envs(gymnasium_robotics)
-    names = [name for name, spec in gymnasium.registry.items() if "gymnasium_robotics" in str(spec.entry_point)]
-    inner = ("ant_env", "point_env", "robot_env", "unwrapped")
-    return {name: (lambda name=name: _of_gymnasium(lambda: gymnasium.make(name), inner)) for name in names}
-
-
-def metaworld() -> dict[str, Callable[[], Env]]:
-    """The tasks of the package."""
-    import gymnasium
-    import metaworld  # noqa: F401
-    from metaworld.env_dict import ALL_V3_ENVIRONMENTS
-
-    def make(name: str) -> Env:
-        return _of_gymnasium(lambda: gymnasium.make("Meta-World/MT1", env_name=name, seed=SEED))
-
-    return {name: (lambda name=name: make(name)) for name in ALL_V3_ENVIRONMENTS}
-
-
-def dm_control() -> dict[str, Callable[[], Env]]:
-    """The tasks of the suite and of ``manipulation``."""
-    from dm_control import manipulation, suite
-
-    def of_suite(domain: str, task: str) -> Env:
-        return _of_dm_control(lambda: suite.load(domain, task, task_kwargs={"random": SEED}))
-
-    tasks = {f"{domain}/{task}": (lambda d=domain, t=task: of_suite(d, t)) for domain, task in suite.ALL_TASKS}
-    for name in manipulation.ALL:
-        tasks[f"manipulation/{name}"] = lambda name=name: _of_dm_control(lambda: manipulation.load(name, seed=SEED))
-    return tasks
-
-
-def myosuite() -> dict[str, Callable[[], Env]]:
-    """The environments that the package registers."""
-    import myosuite
-    from myosuite.utils import gym
-
-    def make(name: str) -> Env:
-        made = _of_gymnasium(lambda: gym.make(name), ("sim",))
-        made.halves = True
-        return made
-
-    return {name: (lambda name=name: make(name)) for name in sorted(myosuite.myosuite_env_suite)}
-
-
-def robosuite() -> dict[str, Callable[[], Env]]:
-    """The environments that the package registers, with one Panda, or two where there are two arms."""
-    import robosuite
-    from robosuite.environments.base import REGISTERED_ENVS
-
-    def make(name: str) -> Env:
-        robots = ["Panda", "Panda"] if name.startswith("TwoArm") else "Panda"
-        settings = {"has_renderer": False, "has_offscreen_renderer": False, "use_camera_obs": False, "seed": SEED}
-        env = robosuite.make(name, robots=robots, **settings)
-        low, high = env.action_spec
-
-        def step(action: Any) -> tuple[Any, float, bool]:
-            observation, reward, done, _ = env.step(action)
-            return observation, float(reward), bool(done)
-
-        return Env(env.reset, step, lambda: env.sim, low, high)
-
-    return {name: (lambda name=name: make(name)) for name in REGISTERED_ENVS}
-
-
-SOURCES = {"gymnasium-robotics": gymnasium_robotics, "metaworld": metaworld, "dm_control": dm_control} | {
-    "myosuite": myosuite,
-    "robosuite": robosuite,
-}
+NUDGE = 1e-15
+"""How far a start is moved to see what MuJoCo makes of it, relative to each position and velocity."""
+SIDES = ("theirs", "ours", "nudged")
 
 
 @contextlib.contextmanager
@@ -224,14 +83,17 @@ def record(make: Callable[[], Env], mujoco: Any, path: Path) -> dict[str, Any]:
     return {"seconds": spent}
 
 
-def repeat(make: Callable[[], Env], mujoco: Any, path: Path) -> dict[str, Any]:
-    """Repeats a run on this package, each step from MuJoCo's state, and measures how far they are apart."""
+def repeat(make: Callable[[], Env], mujoco: Any, path: Path, nudge: float = 0.0, seed: int = 0) -> dict[str, Any]:
+    """Repeats a run, each step from MuJoCo's state or one that is ``nudge`` away, and measures how far they are apart."""
+    random_numbers = np.random.default_rng(seed)
     with np.load(path) as run:
         states, actions, seen, ends = (run[name] for name in ("states", "actions", "seen", "ends"))
     env, _ = _seeded(make)
     apart, spent, worst, fresh = 0.0, 0.0, 0, True
     for number, (state, action, before_it, end) in enumerate(zip(states, actions, seen, ends)):
         mujoco.mj_setState(env.model, env.data, state, FULL)
+        for array in (env.data.qpos, env.data.qvel) if nudge else ():
+            array[:] *= 1 + nudge * random_numbers.uniform(-1, 1, array.size)
         if env.halves:
             mujoco.mj_step1(env.model, env.data)
         before = time.process_time()
@@ -251,6 +113,11 @@ def repeat(make: Callable[[], Env], mujoco: Any, path: Path) -> dict[str, Any]:
     return {"seconds": spent, "apart": apart, "worst": worst}
 
 
+def sensitivity(make: Callable[[], Env], mujoco: Any, path: Path) -> dict[str, Any]:
+    """Measures how far MuJoCo is from itself after steps that start ``NUDGE`` away, in the worst of three runs."""
+    return {"apart": max(repeat(make, mujoco, path, NUDGE, seed)["apart"] for seed in range(3))}
+
+
 def one_package(package: str, side: str, folder: Path, part: str) -> None:
     """Runs the environments of a package on one side, and writes a line about each."""
     warnings.simplefilter("ignore")
@@ -261,15 +128,20 @@ def one_package(package: str, side: str, folder: Path, part: str) -> None:
         mujoco.install()
     else:
         import mujoco
-    work = record if side == "theirs" else repeat
+    work = {"theirs": record, "ours": repeat, "nudged": sensitivity}[side]
     first, step = (int(number) for number in part.split("/"))
     environments = list(SOURCES[package]().items())
-    (folder / f"{package}.count").write_text(json.dumps(len(environments)))
+    (folder / f"{package}.names").write_text(json.dumps([name for name, _ in environments]))
+    known = read(folder, package)
     for name, make in environments[first::step]:
         told: dict[str, Any] = {"name": name, "side": side}
         path = folder / package / (name.replace("/", "_") + ".npz")
         path.parent.mkdir(parents=True, exist_ok=True)
-        if side == "theirs" or path.exists():
+        sides = known.get(name, {})
+        wanted = side == "theirs" or path.exists()
+        if side == "nudged":
+            wanted = sides.get("ours", {}).get("apart", 0) > SAME
+        if side not in sides and wanted:
             try:
                 with limited(SECONDS):
                     told.update(work(make, mujoco, path))
@@ -284,23 +156,27 @@ def one_package(package: str, side: str, folder: Path, part: str) -> None:
                 file.write(json.dumps(told) + "\n")
 
 
-def run(venvs: Path, folder: Path, packages: list[str]) -> None:
-    """Runs the packages, each in its own virtual environment."""
+def run(venvs: Path, folder: Path, packages: list[str], part: str, again: bool) -> None:
+    """Runs what has not run of the packages, each in its own virtual environment."""
+    folder.mkdir(parents=True, exist_ok=True)
     own = Path(__file__).resolve()
     paths = os.pathsep.join(str(own.parents[1] / part) for part in (".", "kit"))
     environment = {**os.environ, "PYTHONPATH": paths, "MUJOCO_GL": "disabled"}
     for package in packages:
-        (folder / f"{package}.jsonl").unlink(missing_ok=True)
-        for side in ("theirs", "ours"):
+        if again:
+            keep = [sides["theirs"] for sides in read(folder, package).values() if "theirs" in sides]
+            (folder / f"{package}.jsonl").write_text("".join(json.dumps(told) + "\n" for told in keep))
+        for side in SIDES:
             python = venvs / package / "bin" / "python"
-            command = [str(python), str(own), "one", package, side, str(folder), "0/1"]
+            command = [str(python), str(own), "one", package, side, str(folder), part]
             subprocess.run(command, env=environment, check=True)
 
 
 def read(folder: Path, package: str) -> dict[str, dict[str, dict[str, Any]]]:
     """Returns what is known of each environment, by name and side."""
     found: dict[str, dict[str, dict[str, Any]]] = {}
-    for line in (folder / f"{package}.jsonl").read_text().splitlines():
+    path = folder / f"{package}.jsonl"
+    for line in path.read_text().splitlines() if path.exists() else ():
         told = json.loads(line)
         found.setdefault(told["name"], {})[told["side"]] = told
     return found
@@ -314,34 +190,42 @@ def _reason(error: str) -> str:
 
 def table(folder: Path, out: Path, speed: bool) -> None:
     """Writes the tables, with a column of speed if asked."""
-    head = ["package", "registered", "tried", "run on MuJoCo", "run here", "agree to 1e-9", "to 1e-6"]
-    rows, reasons, sums = [], Counter[tuple[str, str]](), []
+    head = ["package", "registered", "tried", "run on MuJoCo", "run here", "agree to 1e-9", "as near as MuJoCo"]
+    rows, sums = [], []
+    reasons: dict[tuple[str, str], list[str]] = {}
     for package in PACKAGES:
         found = read(folder, package)
-        registered = json.loads((folder / f"{package}.count").read_text())
-        counts, ratios = [registered, len(found), 0, 0, 0, 0], []
-        for name, sides in sorted(found.items()):
+        registered = json.loads((folder / f"{package}.names").read_text())
+        counts, ratios = [len(registered), len(found), 0, 0, 0, 0], []
+        for name in sorted(registered):
+            sides = found.get(name, {})
             theirs, ours = sides.get("theirs", {}), sides.get("ours", {})
             runs, here, apart = "seconds" in theirs, "seconds" in ours, ours.get("apart", 1.0)
-            flags = (False, False, runs, here, here and apart <= SAME, here and apart <= 1e-6)
+            spread = sides.get("nudged", {}).get("apart", 0.0)
+            near = here and apart <= max(SAME, 10 * spread)
+            flags = (False, False, runs, here, here and apart <= SAME, near)
             counts = [count + flag for count, flag in zip(counts, flags)]
             if here:
                 ratios.append(ours["seconds"] / max(1e-9, theirs["seconds"]))
-                rows.append([package, name, f"{apart:.0e}", f"{ratios[-1]:.2f}"])
+                rows.append([package, name, f"{apart:.0e}", f"{spread:.0e}" if spread else "", f"{ratios[-1]:.2f}"])
             else:
-                error = ours.get("error") or theirs.get("error") or "not run"
-                reasons[f"{package}, {'here alone' if runs else 'MuJoCo too'}", _reason(error)] += 1
+                where = "here alone" if runs and ours else "MuJoCo too" if "error" in theirs else "not tried"
+                error = ours.get("error") or theirs.get("error") or ""
+                reasons.setdefault((f"{package}, {where}", _reason(error)), []).append(name)
         sums.append([package, *map(str, counts), f"{np.median(ratios):.2f}" if ratios else ""])
     sums.append(["all", *(str(sum(int(row[k]) for row in sums)) for k in range(1, len(head))), ""])
-    why = [[where, reason, str(count)] for (where, reason), count in reasons.most_common()]
+    why = [
+        f"{len(names)} of {where}{reason and ': '}{reason}\n\n{' '.join(f'`{name}`' for name in names)}"
+        for (where, reason), names in sorted(reasons.items(), key=lambda pair: -len(pair[1]))
+    ]
     last = ["step over theirs"] if speed else []
     text = [
         INTRODUCTION + (SPEED if speed else ""),
         _markdown(head + last, sums),
         "## What keeps the others from running",
-        _markdown(["where", "why", "environments"], why),
+        *why,
         "## Environments",
-        _markdown(["package", "environment", "apart", *last], rows),
+        _markdown(["package", "environment", "apart", "MuJoCo nudged", *last], rows),
     ]
     out.write_text("\n\n".join(text) + "\n")
 
@@ -376,6 +260,8 @@ def main() -> None:
     one.add_argument("venvs", type=Path)
     one.add_argument("results", type=Path)
     one.add_argument("packages", nargs="*", default=list(PACKAGES))
+    one.add_argument("--part", default="0/1", help="K/N: each Nth environment, from the Kth on")
+    one.add_argument("--again", action="store_true", help="repeat the runs of this package")
     single = commands.add_parser("one")
     for name in ("package", "side", "results", "part"):
         single.add_argument(name)
@@ -385,7 +271,7 @@ def main() -> None:
     last.add_argument("--speed", action="store_true", help="with a column of the CPU time of steps")
     given = parser.parse_args()
     if given.command == "run":
-        run(given.venvs, given.results, given.packages)
+        run(given.venvs, given.results, given.packages, given.part, given.again)
     elif given.command == "one":
         one_package(given.package, given.side, Path(given.results), given.part)
     else:
