@@ -9,6 +9,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from .hints import nearest
+
 KINDS = {
     "body": "body",
     "joint": "joint",
@@ -77,13 +79,15 @@ class Named(ABC):
     _names: dict[str, list[str]]
     _numbers: dict[str, dict[str, int]]
 
-    def _find(self, kind: str, key: int | str) -> tuple[int, str]:
+    def _find(self, kind: str, key: int | str | bytes) -> tuple[int, str]:
         names = self._names[kind]
+        if isinstance(key, bytes):
+            key = key.decode()
         if isinstance(key, str):
             number = self._numbers[kind].get(key)
             if number is None:
-                known = ", ".join(name for name in names if name)
-                raise KeyError(f"Invalid name '{key}'. Valid names: {known}")
+                known = sorted(name for name in names if name)
+                raise KeyError(f"Invalid name '{key}'{nearest(key, known) or '.'} Valid names: {known}")
             return number, key
         number = int(key)
         if not 0 <= number < len(names):
@@ -99,7 +103,7 @@ def numbers(names: dict[str, list[str]]) -> dict[str, dict[str, int]]:
 def accessor(kind: str) -> Callable[..., Element]:
     """Makes the method that finds the elements of a kind."""
 
-    def access(self: Any, key: int | str = 0) -> Element:
+    def access(self: Any, key: int | str | bytes = 0) -> Element:
         number, name = self._find(kind, key)
         return Element(self, kind, number, name)
 

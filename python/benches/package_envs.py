@@ -122,7 +122,7 @@ def myosuite() -> dict[str, Callable[[], Env]]:
     from myosuite.utils import gym
 
     def make(name: str) -> Env:
-        made = _of_gymnasium(lambda: gym.make(name), ("sim",))
+        made = _of_gymnasium(lambda: gym.make(name, seed=SEED), ("sim",))
         made.halves = True
         return made
 

@@ -91,9 +91,10 @@ def mj_id2name(m: MjModel, type: int, id: int) -> str | None:
     return (names[id] or None) if 0 <= id < len(names) else None
 
 
-def mj_name2id(m: MjModel, type: int, name: str) -> int:
+def mj_name2id(m: MjModel, type: int, name: str | bytes) -> int:
     """Returns the id of an element; -1 if it does not exist."""
     names = _names(m, type)
+    name = name.decode() if isinstance(name, bytes) else name
     return names.index(name) if name and name in names else -1
 
 

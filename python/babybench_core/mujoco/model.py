@@ -345,24 +345,19 @@ class MjModel(Named, metaclass=Fields):
         """Returns the part of an array that belongs to an element."""
         if kind == "joint" and name in ("qpos0", "qpos_spring"):
             return span(getattr(self, name), self.jnt_qposadr, number)
-        if kind == "joint" and name in (
-            "armature",
-            "damping",
-            "frictionloss",
-            "invweight0",
-            "M0",
-            "Madr",
-            "jntid",
-            "parentid",
-        ):
+        if kind == "joint" and name in _OF_DOFS:
             return span(getattr(self, f"dof_{name}"), self.jnt_dofadr, number)
         if kind == "numeric" and name == "data":
             first = self.numeric_adr[number]
             return self.numeric_data[first : first + self.numeric_size[number]]
+        if kind == "hfield" and name == "data":
+            first, rows, columns = (int(getattr(self, f"hfield_{size}")[number]) for size in ("adr", "nrow", "ncol"))
+            return self.hfield_data[first : first + rows * columns].reshape(rows, columns)
         array: NDArray[Any] = getattr(self, f"{PREFIX.get(kind, kind)}_{name}")
         return array[number] if array.ndim > 1 else array[number : number + 1]
 
 
+_OF_DOFS = frozenset({"armature", "damping", "frictionloss", "invweight0", "M0", "Madr", "jntid", "parentid"})
 _CONSTANTS = ("dof_M0", "body_subtreemass")
 """Arrays that ``mj_setConst`` computes anew."""
 _OF_EDGES = ("flexedge_invweight0", "flexedge_length0", "flexedge_rigid")
@@ -398,5 +393,9 @@ def is_compiled(model: Any) -> bool:
 _KIND_OF = {"jnt": "joint", "cam": "camera"}
 
 
-for _name, _kind in {**KINDS, "light": "light", "key": "key", "keyframe": "key", "numeric": "numeric"}.items():
+for _name, _kind in {
+    **KINDS,
+    **{kind: kind for kind in ("light", "key", "numeric", "hfield", "mesh", "skin")},
+    "keyframe": "key",
+}.items():
     setattr(MjModel, _name, accessor(_kind))
