@@ -36,6 +36,8 @@ FULL = 8191
 SAME = 1e-9
 NUDGE = 1e-15
 """How far a start is moved to see what MuJoCo makes of it, relative to each position and velocity."""
+COMMIT = "BABYBENCH_COMMIT"
+"""The variable that hands the commit of this package on."""
 SIDES = ("theirs", "ours", "nudged")
 
 
@@ -133,8 +135,9 @@ def one_package(package: str, side: str, folder: Path, part: str) -> None:
     environments = list(SOURCES[package]().items())
     (folder / f"{package}.names").write_text(json.dumps([name for name, _ in environments]))
     known = read(folder, package)
+    commit = os.environ.get(COMMIT, "")
     for name, make in environments[first::step]:
-        told: dict[str, Any] = {"name": name, "side": side}
+        told: dict[str, Any] = {"name": name, "side": side, "commit": commit}
         path = folder / package / (name.replace("/", "_") + ".npz")
         path.parent.mkdir(parents=True, exist_ok=True)
         sides = known.get(name, {})
@@ -161,7 +164,9 @@ def run(venvs: Path, folder: Path, packages: list[str], part: str, again: bool) 
     folder.mkdir(parents=True, exist_ok=True)
     own = Path(__file__).resolve()
     paths = os.pathsep.join(str(own.parents[1] / part) for part in (".", "kit"))
-    environment = {**os.environ, "PYTHONPATH": paths, "MUJOCO_GL": "disabled"}
+    asked = ["git", "-C", str(own.parent), "rev-parse", "--short=8", "HEAD"]
+    commit = subprocess.run(asked, capture_output=True, text=True, check=True).stdout.strip()
+    environment = {**os.environ, "PYTHONPATH": paths, "MUJOCO_GL": "disabled", COMMIT: commit}
     for package in packages:
         if again:
             keep = [sides["theirs"] for sides in read(folder, package).values() if "theirs" in sides]

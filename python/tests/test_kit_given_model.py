@@ -108,7 +108,7 @@ def test_model_and_data_are_replaced_later() -> None:
 
 def test_what_cannot_be_taken_over_is_refused() -> None:
     env = MIMoDummyEnv(**PLAIN)
-    with pytest.raises(TypeError, match=r"must be a model of babybench\.mujoco"):
+    with pytest.raises(TypeError, match=r"must be a model of MuJoCo or of babybench\.mujoco"):
         env.model = object()
     with pytest.raises(TypeError, match=r"must be a state of babybench\.mujoco"):
         env.data = object()

@@ -203,6 +203,19 @@ class Core:
         if self._watched is not None:
             self._watched.show(changes)
 
+    def show_model(self, watched: Watched) -> None:
+        """Shows scripts another model of the same scene."""
+        self._watched, self._live = watched, None
+
+    def check_model(self) -> None:
+        """Gives the engine what a script has written into the model.
+
+        Raises:
+            ValueError: Something that the engine does not take over.
+        """
+        if self._watched is not None:
+            self._watched.check()
+
     # --- senses ---
 
     def observe(self) -> None:

@@ -13,8 +13,10 @@ from numpy.typing import NDArray
 from babybench_core.mujoco.data import MjData
 from babybench_core.mujoco.model import MjModel, Source
 
+from . import given_mujoco
 from .actuation import MODELS
 from .core import Core
+from .known_scenes import known_scene
 from .live import STATE
 from .scene import Document, Scene, document_scene
 
@@ -29,14 +31,14 @@ _COPIED = {"tex_data"}
 class Given:
     """A model that a program has compiled, and the state that goes with it, until an environment has taken them over."""
 
-    model: MjModel
-    _data: MjData | None = None
+    model: Any
+    _data: Any = None
 
     @property
-    def data(self) -> MjData:
+    def data(self) -> Any:
         """The state: the program's own, or one at ``qpos0``."""
         if self._data is None:
-            self._data = MjData(self.model)
+            self._data = given_mujoco.state(self.model) if given_mujoco.is_model(self.model) else MjData(self.model)
         return self._data
 
     @data.setter
@@ -51,6 +53,8 @@ def check_state(data: Any, model: Any = None) -> None:
     Raises:
         TypeError, ValueError: It is one of these.
     """
+    if given_mujoco.is_state(data) and (model is None or given_mujoco.is_model(model)):
+        return  # the sizes are compared when it is taken over
     if not isinstance(data, MjData):
         raise TypeError(f"env.data must be a state of babybench.mujoco, MjData(model), not {type(data).__name__}")
     if model is not None and data.model is not model:
@@ -65,8 +69,7 @@ def given_scene(model: Any) -> Scene:
     """
     if not isinstance(model, MjModel):
         raise TypeError(
-            f"env.model must be a model of babybench.mujoco (MjModel or MjSpec.compile()), not {type(model).__module__}."
-            f"{type(model).__name__}: call babybench.mujoco.install() before anything imports mujoco"
+            f"env.model must be a model of MuJoCo or of babybench.mujoco, not {type(model).__module__}.{type(model).__name__}"
         )
     source: Source | None = model._source
     if source is None:
@@ -75,12 +78,15 @@ def given_scene(model: Any) -> Scene:
     return document_scene(document, set(model._names["body"]))
 
 
-def take_model(core: Core, model: MjModel) -> None:
+def take_model(core: Core, model: Any, path: str) -> None:
     """Gives an environment what a program has written into a model since it was compiled.
 
     Raises:
         AttributeError, ValueError: Something that the environment cannot take over.
     """
+    if given_mujoco.is_model(model):
+        given_mujoco.adopt(core, model, path)
+        return
     fresh = MjModel._made(model._source.compile(), None)
     shown = core.model
     for name in (name for name in model.writable if name not in _COPIED):
@@ -105,7 +111,7 @@ def _write(model: Any, name: str, now: NDArray[Any], written: NDArray[np.bool_])
     setattr(model, name, array)
 
 
-def take_state(core: Core, data: MjData) -> None:
+def take_state(core: Core, data: Any) -> None:
     """Puts an environment where a state is, and computes everything there.
 
     Raises:
@@ -133,6 +139,8 @@ class TakesModels:
     _given: Given | None
     _making: bool
     _source: Source | None
+    fullpath: str
+    _any_scene: bool
     _actuation: type[ActuationModel]
     _config: Mapping[str, Any]
     actuation_model: Any
@@ -168,7 +176,9 @@ class TakesModels:
         """Takes a model that a program has compiled, and begins at its ``qpos0``: ``env.data`` can be assigned after it."""
         given = Given(model)
         # the program's own model has the age that it was given
-        core = self._compile(given_scene(model), self._actuation, self._config, None)
+        mine = given_mujoco.is_model(model)
+        scene = known_scene(self.fullpath, self._any_scene) if mine else given_scene(model)
+        core = self._compile(scene, self._actuation, self._config, None)
         if self._making:
             self._core, self._given = core, given
             return
@@ -177,7 +187,7 @@ class TakesModels:
         try:
             self._name_parts()
             self._end_given()
-            self._source = model._source
+            self._source = None if mine else model._source
             self._make_actuation()
             self._sense_anew()
         except Exception:
@@ -223,7 +233,7 @@ class TakesModels:
         """Gives the engine what a program has written into its own model and state."""
         given, self._given = self._given, None
         assert given is not None
-        take_model(self._core, given.model)
+        take_model(self._core, given.model, self.fullpath)
         take_state(self._core, given.data)
         self.init_qpos, self.init_qvel = given.data.qpos.copy(), given.data.qvel.copy()
         self._core.plain_actuation = self._core.whole and self._actuation in MODELS.values()

@@ -430,7 +430,7 @@ class MIMoEnv(TakesModels, GoalEnv):
         if source is not None:
             self.model = MjModel._made(source.compile(), source)
         self.__dict__.update(kept)
-        self._core.engine.change_model(state["changes"])
+        self._core.change_model(state["changes"])
         take_looks(self._core, state["looks"])
         self._core.engine.restore(state["snapshot"])
         self._own_seed = self.action_space._np_random

@@ -70,7 +70,7 @@ def _grow(model: Any, core: Beneath) -> None:
             own[...] = array
 
 
-def mujoco_model(mujoco: ModuleType, core: Beneath) -> Any:
+def compiled(mujoco: ModuleType, core: Beneath) -> Any:
     """Compiles the scene of an environment with MuJoCo; pictures on surfaces are the library's small ones."""
     if core.document is not None and core.document.path is not None:
         root = flat(core.document.path)
@@ -82,6 +82,11 @@ def mujoco_model(mujoco: ModuleType, core: Beneath) -> Any:
     model = mujoco.MjModel.from_xml_string(xml, images)
     if core.document is not None and core.config["age"] is not None:
         _grow(model, core)
+    return model
+
+
+def mujoco_model(mujoco: ModuleType, core: Beneath, model: Any) -> Any:
+    """Gives a compiled model of MuJoCo what an environment changes in it."""
     # the defaults of MuJoCo 3.3.0, whose contacts the engine has
     for name in ("mjDSBL_MULTICCD", "mjDSBL_ISLAND"):
         model.opt.disableflags |= int(getattr(mujoco.mjtDisableBit, name, 0))
@@ -134,6 +139,7 @@ class Watched:
         self.options = self._options()
         self.visual = visual_numbers(model)
         self.fixed = {} if isinstance(model, ModelView) else self._fix()
+        self.fixed_options = {} if isinstance(model, ModelView) else self._other_options()
 
     def _fix(self) -> dict[str, NDArray[Any]]:
         """Makes MuJoCo's other arrays read-only, and remembers them, as they can be written in other ways."""
@@ -150,6 +156,12 @@ class Watched:
     def _options(self) -> tuple[float, ...]:
         opt = self.model.opt
         return tuple(getattr(opt, name[4:]) for name in self.option_names)
+
+    def _other_options(self) -> dict[str, Any]:
+        """Returns MuJoCo's other options, which cannot be made read-only."""
+        opt, known = self.model.opt, {name[4:] for name in self.option_names + self.names}
+        values = {name: getattr(opt, name) for name in dir(opt) if not name.startswith("_") and name not in known}
+        return {name: np.array(value) for name, value in values.items() if isinstance(value, (int, float, np.ndarray))}
 
     def follow(self) -> None:
         """Gives the engine what a script has written into the model.
@@ -225,6 +237,8 @@ class Watched:
         """
         self.follow()
         changed = [name for name, array in self.fixed.items() if not np.array_equal(getattr(self.model, name), array)]
+        opt, options = self.model.opt, self.fixed_options.items()
+        changed += [f"opt.{name}" for name, value in options if not np.array_equal(getattr(opt, name), value)]
         if changed:
             raise ValueError(
                 f"env.model was changed ({', '.join(changed)}), but what the engine takes over are "
@@ -261,7 +275,7 @@ def make_model(core: Beneath) -> Any:
     mujoco = mujoco_module()
     # MuJoCo has not seen a document that a program has compiled with the engine
     shown = mujoco is None or (core.document is not None and core.document.path is None)
-    model = view_model(core) if mujoco is None or shown else mujoco_model(mujoco, core)
+    model = view_model(core) if mujoco is None or shown else mujoco_model(mujoco, core, compiled(mujoco, core))
     active = np.asarray(core.parts.eq_active0).astype(model.eq_active0.dtype)
     model.eq_active0[:] = active
     for name, array in core.engine.model_changes.items():
