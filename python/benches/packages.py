@@ -1,9 +1,9 @@
-"""Runs the environments of five packages on ``babybench.mujoco`` beside MuJoCo 3.3.0, and writes ``docs/packages.md``.
+"""Runs the environments of five packages on ``babybench.mujoco`` beside MuJoCo 3.3.0, and writes docs/packages.md.
 
 Each package has a virtual environment of its own, in which ``packages.txt`` says what is installed::
 
     python benches/packages.py run VENVS RESULTS        # VENVS/NAME/bin/python for each package; a file in RESULTS for each
-    python benches/packages.py table RESULTS docs/packages.md
+    python benches/packages.py table RESULTS ../docs/packages.md --speed
 
 A run that was interrupted goes on where it ended; ``--again`` repeats what this package did, as after a change of it.
 Both runs have the same seeds and actions. That on this package starts each step from the state that MuJoCo had.
@@ -19,6 +19,7 @@ import random
 import signal
 import subprocess
 import sys
+import textwrap
 import time
 import traceback
 import warnings
@@ -195,24 +196,26 @@ def _reason(error: str) -> str:
 
 def table(folder: Path, out: Path, speed: bool) -> None:
     """Writes the tables, with a column of speed if asked."""
-    head = ["package", "registered", "tried", "run on MuJoCo", "run here", "agree to 1e-9", "as near as MuJoCo"]
+    head = ["package", "registered", "tried here", "run on MuJoCo", "run here", "agree to 1e-9", "as near as MuJoCo"]
     rows, sums = [], []
     reasons: dict[tuple[str, str], list[str]] = {}
     for package in PACKAGES:
         found = read(folder, package)
         registered = json.loads((folder / f"{package}.names").read_text())
-        counts, ratios = [len(registered), len(found), 0, 0, 0, 0], []
+        counts, ratios = [len(registered), 0, 0, 0, 0, 0], []
         for name in sorted(registered):
             sides = found.get(name, {})
             theirs, ours = sides.get("theirs", {}), sides.get("ours", {})
             runs, here, apart = "seconds" in theirs, "seconds" in ours, ours.get("apart", 1.0)
             spread = sides.get("nudged", {}).get("apart", 0.0)
             near = here and apart <= max(SAME, 10 * spread)
-            flags = (False, False, runs, here, here and apart <= SAME, near)
+            flags = (False, bool(ours) or "error" in theirs, runs, here, here and apart <= SAME, near)
             counts = [count + flag for count, flag in zip(counts, flags)]
             if here:
                 ratios.append(ours["seconds"] / max(1e-9, theirs["seconds"]))
-                rows.append([package, name, f"{apart:.0e}", f"{spread:.0e}" if spread else "", f"{ratios[-1]:.2f}"])
+                note = NOTES.get(name, "" if near else "not explained" if spread else "not nudged")
+                other = f"{spread:.0e}" if spread else ""
+                rows.append([package, name, f"{apart:.0e}", other, note, ours.get("commit", ""), f"{ratios[-1]:.2f}"])
             else:
                 where = "here alone" if runs and ours else "MuJoCo too" if "error" in theirs else "not tried"
                 error = ours.get("error") or theirs.get("error") or ""
@@ -220,17 +223,17 @@ def table(folder: Path, out: Path, speed: bool) -> None:
         sums.append([package, *map(str, counts), f"{np.median(ratios):.2f}" if ratios else ""])
     sums.append(["all", *(str(sum(int(row[k]) for row in sums)) for k in range(1, len(head))), ""])
     why = [
-        f"{len(names)} of {where}{reason and ': '}{reason}\n\n{' '.join(f'`{name}`' for name in names)}"
+        f"{len(names)} of {where}{reason and ': '}{reason}\n\n{textwrap.fill(' '.join(f'`{name}`' for name in names), 140)}"
         for (where, reason), names in sorted(reasons.items(), key=lambda pair: -len(pair[1]))
     ]
     last = ["step over theirs"] if speed else []
     text = [
         INTRODUCTION + (SPEED if speed else ""),
         _markdown(head + last, sums),
-        "## What keeps the others from running",
+        "## What has not run",
         *why,
         "## Environments",
-        _markdown(["package", "environment", "apart", "MuJoCo nudged", *last], rows),
+        _markdown(["package", "environment", "apart", "MuJoCo nudged", "note", "commit", *last], rows),
     ]
     out.write_text("\n\n".join(text) + "\n")
 
@@ -243,14 +246,23 @@ def _markdown(head: list[str], rows: list[list[str]]) -> str:
 
 INTRODUCTION = """# Packages of environments on babybench.mujoco
 
-Five packages run on [`babybench.mujoco`](mujoco.md) as PyPI ships them, after `babybench.mujoco.install()`.
-`benches/packages.txt` has their versions, and `benches/packages.py` writes this page. An environment runs if it is made,
+Five packages run on [`babybench.mujoco`](../python/docs/mujoco.md) as PyPI ships them, after `babybench.mujoco.install()`.
+[`packages.txt`](../python/benches/packages.txt) has their versions, and `python/benches/packages.py` writes this page; each
+row says on which commit it was run, and what has not run is listed below by name. An environment runs if it is made,
 reset and stepped 200 times with random actions without an error.
 
 Both runs have the same seeds and actions, and each step here starts from the state that MuJoCo 3.3.0 had. *Apart* is the
 largest difference of an observation or a reward, relative to the largest number beside it, or to 1. The first step after
-a reset is left out, unless each step ends an episode: some observations remember where the steps of the reset have led."""
+a reset is left out, unless each step ends an episode: some observations remember where the steps of the reset have led.
+Observations of MyoSuite are single precision, so they are equal where differences are smaller than that.
 
+Where they are farther apart than 1e-9, *MuJoCo nudged* is as far as MuJoCo is from itself when its steps start from states
+that were changed by 1e-15 of each number, in the worst of up to three runs: contacts that begin or end within a step, and solvers
+that stop one iteration earlier, multiply such differences. *As near as MuJoCo* counts the environments within 1e-9 or ten
+times that."""
+
+NOTES = dict.fromkeys(("push-v3", "push-wall-v3"), "its goal lies where the steps of the reset have led")
+"""Why environments are apart, where a nudge of MuJoCo does not show it."""
 SPEED = """
 
 The last column compares the CPU time of the package's whole step, which is mostly Python in some of them; 0.5 is twice as
