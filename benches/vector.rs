@@ -6,10 +6,10 @@
 //!   spend; loops by the latter.
 //! - `crowd`: a step in a vector of many environments against the same steps in one environment alone, one thread, by processor time:
 //!   what it costs that environments take turns in the caches.
-//! - `rates`: an environment whose eyes see 30 pictures a second, and one whose eyes are asked for in every tenth step, against one that draws in
+//! - `rates`: an environment whose eyes see 30 pictures a second, and one whose eyes are requested in every tenth step, against one that draws in
 //!   every step, by processor time.
-//! - `nodes`: 64 nodes of a search, each a state that goes on from the same one for a step, in a `physics::Batch` of one thread against one engine
-//!   and a state that is copied, stepped and copied again, by processor time.
+//! - `nodes`: 64 nodes of a search, each a state that continues from the same one for a step, in a `physics::Batch` of one thread against one
+//!   engine and a state that is copied, stepped and copied again, by processor time.
 //! - `eyes`: one environment whose eyes two threads draw (`vision_threads: 2`) against one that draws them alone, by the clock.
 //! - `memory`: how long 4,096 environments take to make, what they keep resident after some steps, and what a further one takes of
 //!   the allocator; each in a process of its own, in which no memory is there from before.

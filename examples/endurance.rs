@@ -6,7 +6,7 @@
 //! cargo run --release --features rapier --example endurance -- steps 10000000 'crib | v2'   # the rows that begin so
 //! ```
 //!
-//! A step is an error of its type or leaves finite numbers; a twin that is restored from a snapshot goes on with the same bits; memory
+//! A step is an error of its type or leaves finite numbers; a twin that is restored from a snapshot continues with the same bits; memory
 //! does not grow; no start takes long, and after each the environment starts as ever. Whatever is not so ends the program. Of the steps one
 //! in a hundred has touch and eyes, and one in two hundred, as of the starts one in ten, is the Rapier engine's, which is slow.
 //! Times are CPU time on Linux.
@@ -122,7 +122,7 @@ fn check(env: &Env) -> Result<()> {
     }
 }
 
-/// The bits of all that is sensed.
+/// The bits of all senses.
 fn bits(seen: &Observation) -> Vec<u64> {
     let numbers = seen.proprioception.iter().chain(seen.vestibular.unwrap_or_default());
     let touch = seen.touch.unwrap_or_default().iter();
@@ -150,7 +150,7 @@ fn time() -> Duration {
     on_cpu.map_or_else(|| first.elapsed(), Duration::from_nanos)
 }
 
-/// Lets a twin make the step that the environment made.
+/// Repeats the environment's step with its twin.
 fn compare(env: &Env, made: &std::result::Result<Vec<u64>, String>, twin: &mut Env, action: &[f32]) -> Result<()> {
     if step(twin, action) == *made {
         Ok(())
@@ -271,7 +271,7 @@ fn absurd(rng: &mut NumpyRng, qpos: &mut [f64], qvel: &mut [f64]) {
     }
 }
 
-/// The outcomes of a row of starts.
+/// The outcomes of a series of starts.
 #[derive(Default)]
 struct Starts {
     number: u64,

@@ -1,5 +1,5 @@
-//! Prints the milliseconds of a piece of work, the least of some rounds: `pace physics`, `pace eyes` or `pace picture`. The
-//! script `web/bench.mjs` runs it beside a browser that does the same.
+//! Prints the milliseconds that a piece of work takes in the fastest of some rounds: `pace physics`, `pace eyes` or
+//! `pace picture`. The script `web/bench.mjs` runs it next to a browser that does the same.
 
 use std::time::Instant;
 
@@ -7,7 +7,7 @@ use babybench::config::{Behavior, Scene};
 use babybench::env::Viewer;
 use babybench::{Config, Env};
 
-/// Rounds, of which the fastest counts.
+/// Number of rounds; the fastest counts.
 const ROUNDS: usize = 5;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {

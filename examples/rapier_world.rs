@@ -87,7 +87,7 @@ fn play() -> Result<(), Error> {
     Ok(())
 }
 
-/// Compares a step of both with that of his own scene and of the world alone.
+/// Compares the time of a step of both with that of his own scene and that of the world without him.
 fn compare() -> Result<(), Error> {
     let (mut with, mut without) = (world(), world());
     let (here, options) = (Pose::IDENTITY, CouplingOptions::default());

@@ -1,5 +1,5 @@
 //! Learns to reach with the cross-entropy method: the torques of the arm are a linear function of its position and velocity and of the
-//! ball's position. Functions that bring the fingers to the ball survive. Takes a minute or two on two cores.
+//! ball's position, and the functions that bring the fingers closest to the ball are kept. Takes a minute or two on two cores.
 //!
 //! ```sh
 //! cargo run --release --features parallel --example reach
@@ -129,7 +129,7 @@ impl Arena {
         }
     }
 
-    /// Prints how often the ball is reached in episodes of its own.
+    /// Prints how often the ball is reached in separate episodes.
     fn compare(&mut self, what: &str, policy: Option<&[f64]>) -> Result<(), VectorError> {
         let policies = policy.map(|policy| vec![policy.to_vec(); POPULATION]);
         let (mut reached, mut steps) = (0, 0);

@@ -40,7 +40,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     Ok(())
 }
 
-/// Bytes of what was observed so far.
+/// Bytes of the observations so far.
 #[derive(Default)]
 struct Sizes {
     numbers: usize,

@@ -169,7 +169,7 @@ def full_disk():
 
 
 def read_only():
-    """Takes away the right to write: each command must say so, and nothing must change."""
+    """Removes the permission to write: each command must report it, and nothing must change."""
     with tempfile.TemporaryDirectory() as folder:
         start(folder)
         commands = " ; ".join(f'{PROGRAM} {" ".join(c)}; echo "code $?"' for c in COMMANDS.values())

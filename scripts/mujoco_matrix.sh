@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Environments of the starter kit beside releases of MuJoCo. Usage: scripts/mujoco_matrix.sh FOLDER [RELEASE...]
+# Environments of the starter kit with several releases of MuJoCo. Usage: scripts/mujoco_matrix.sh FOLDER [RELEASE...]
 # FOLDER has the wheels of babybench and babybench-kit (target/python/dist, which .ci/python fills).
 # Without releases: all from 3.3.0 to the newest that pip finds. Needs Python 3 with venv, and the network for wheels.
 # Prints a line for each release; fails if a test fails on one of them.

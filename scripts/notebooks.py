@@ -80,7 +80,7 @@ def main() -> None:
         else:
             path.write_text(made, "utf-8")
     for path in old:
-        print(f"{path} is old: scripts/notebooks.py makes it anew", file=sys.stderr)
+        print(f"{path} is old: run scripts/notebooks.py", file=sys.stderr)
     sys.exit(bool(old))
 
 

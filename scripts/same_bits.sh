@@ -3,9 +3,10 @@
 #   scripts/same_bits.sh [ROW...]      # all rows, or those named: scripts/same_bits.sh threads wasm
 # Rows: threads debug avx2 avx512 nehalem i686 aarch64 riscv64 s390x wasm wasm-simd128. Each builds the example `checksum` for its
 # target and compares its lines (episodes, tasks and variants, vectors, snapshots, pictures) with those of one thread of a release build for every x86-64.
-# It restores the snapshots that this build wrote and goes on, and this build restores those of the row. An emulated processor computes a step as
-# long as this one computes fifty, so episodes end after 10 steps there. Other processors need Debian's qemu-user-static (of backports, or of Debian 13, for
-# s390x) and gcc-ARCH-linux-gnu; a row that cannot run on this machine says why. PROGRAM names a release build of the example that is there already. The result is in docs/same-bits.md.
+# It restores the snapshots that this build wrote and continues, and this build restores those of the row. An emulated processor computes a
+# step as long as this one computes fifty, so episodes end after 10 steps there. Other processors need Debian's qemu-user-static (of
+# backports, or of Debian 13, for s390x) and gcc-ARCH-linux-gnu; a row that cannot run on this machine says why. PROGRAM names a release
+# build of the example that is there already. The result is in docs/same-bits.md.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 target=${CARGO_TARGET_DIR:-$PWD/target}

@@ -48,7 +48,7 @@ def number(x, digits):
 
 
 def icosphere(times):
-    """Points of a unit sphere, and faces: an icosahedron whose faces are divided into four so many times."""
+    """Points and faces of a unit sphere: an icosahedron whose faces are divided into four this many times."""
     golden = (1 + sqrt(5)) / 2
     corners = [(s, t * golden, 0.0) for s in (-1, 1) for t in (-1, 1)]
     corners = [at[k:] + at[:k] for k in range(3) for at in corners]
@@ -202,7 +202,7 @@ def polygon(corners, radius, turn=0.0, centre=(0.0, 0.0)):
 
 
 def cut(outline, a, b):
-    """Keeps what is on the left of the line from a to b."""
+    """Keeps the part to the left of the line from a to b."""
     kept = []
 
     def side(p):

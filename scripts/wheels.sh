@@ -7,7 +7,7 @@
 #   manylinux-x86_64, manylinux-aarch64    Linux with glibc 2.17 or later
 #   musllinux-x86_64, musllinux-aarch64    Linux with musl 1.2, as Alpine's
 #   check                                  the package compiles for macOS and Windows: no linker, no Python of theirs
-#   native                                 the wheel of the system that runs this: universal2 on macOS, whatever pip calls it elsewhere
+#   native                                 the wheel of the system that runs this: universal2 on macOS, otherwise with pip's tag
 #   sdist                                  the source distributions of both packages
 # The linker for Linux is Zig's, with the C library that the name says. Needs rustup, Python 3 with venv, and the network for crates and
 # wheels of tools. A wheel takes about ten minutes of one core.

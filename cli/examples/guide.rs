@@ -28,11 +28,11 @@ const PER_MONTH: u32 = 4;
 #[derive(Default)]
 struct Curve {
     title: &'static str,
-    /// Where its axis begins.
+    /// Start of its axis.
     from: f64,
     /// Age, months, and value.
     points: Vec<(f64, f64)>,
-    /// What of it is usual among infants, if that is known: of boys and of girls.
+    /// The usual range among infants, if known: of boys and of girls.
     bands: Vec<Band>,
 }
 
@@ -75,7 +75,7 @@ fn ages() -> impl Iterator<Item = f64> {
     (0..=MAX_AGE as u32 * PER_MONTH).map(|quarter| f64::from(quarter) / f64::from(PER_MONTH))
 }
 
-/// Draws curves beside each other.
+/// Draws curves side by side.
 fn draw(file: &Path, curves: &[Curve]) -> Result<(), Box<dyn Error>> {
     let columns = curves.len().min(2);
     let rows = curves.len().div_ceil(columns);

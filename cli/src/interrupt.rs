@@ -51,7 +51,7 @@ fn ignored(signal: i32) -> bool {
     mask.is_some_and(|mask| mask >> (signal - 1) & 1 == 1)
 }
 
-/// The error of an interrupted command, with what it left behind.
+/// The error of an interrupted command, with the files that it left behind.
 #[derive(Debug)]
 pub struct Interrupted(pub String);
 

@@ -2,7 +2,7 @@
 # Fetches MuJoCo's library and headers for the live tests into target/mujoco/VERSION/.
 #   conformance/scripts/fetch_mujoco.sh              3.3.0, the one that babybench reproduces
 #   conformance/scripts/fetch_mujoco.sh VERSION...   these; `newest` is the newest release, `later` stands for those of the report
-# Needs python3, and pip in it or in the environment that fetch_python.sh makes, on 64-bit Linux. What is there already is not
+# Needs python3, and pip in it or in the environment that fetch_python.sh makes, on 64-bit Linux. What already exists is not
 # fetched again.
 set -euo pipefail
 cd "$(dirname "$0")/../.."

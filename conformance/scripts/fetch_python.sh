@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Makes a Python environment under target/. What is there already is not made again.
+# Makes a Python environment under target/. An existing one is not made again.
 #   conformance/scripts/fetch_python.sh        target/python, for the tests: NumPy and, where there is a wheel for this
 #                                              Python, MuJoCo 3.3.0
 #   conformance/scripts/fetch_python.sh kit    target/python-kit, for BabyBench's Python kit: kit_requirements.txt

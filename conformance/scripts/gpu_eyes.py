@@ -75,7 +75,7 @@ def egl(model, states, environments):
 
 
 def mjwarp(model, states, environments):
-    """As above, by MuJoCo Warp."""
+    """Yields the same for MuJoCo Warp."""
     import mujoco_warp as mjw
     import warp as wp
 

@@ -1,4 +1,4 @@
-"""Steps an environment of BabyBench's Python kit and says how much CPU time that takes.
+"""Steps an environment of BabyBench's Python kit and prints the CPU time of the steps.
 
     python kit_speed.py KIT
 

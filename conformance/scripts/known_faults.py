@@ -1,4 +1,4 @@
-"""Measures the faults of MuJoCo 3.3.0 that later releases have mended, and writes the table of docs/guide/known-faults.md.
+"""Measures the faults of MuJoCo 3.3.0 that later releases have fixed, and writes the table of docs/guide/known-faults.md.
 
 usage: python known_faults.py                        measures the mujoco that this Python imports: JSON
        python known_faults.py --babybench            measures babybench.mujoco of this Python
@@ -124,7 +124,7 @@ def mirrored_inside_out(mujoco) -> int:
 
 
 def board(mujoco, depth: float):
-    """Returns the contacts of a box that is so deep in a board of 2 cm."""
+    """Returns the contacts of a box at this depth in a board of 2 cm."""
     _, data = loaded(
         mujoco,
         f"""<mujoco><worldbody><geom type="box" size="1 1 .01"/>
@@ -185,7 +185,7 @@ def cell(value: object) -> str:
 
 
 def main() -> None:
-    """Does what the arguments say."""
+    """Runs the command with its arguments."""
     if sys.argv[1:2] == ["--table"]:
         columns = [(Path(file).stem, json.loads(Path(file).read_text())) for file in sys.argv[2:]]
         print("| | " + " | ".join(name for name, _ in columns) + " |")

@@ -94,7 +94,7 @@ def globe(rings=8, around=14, radius=0.17):
 
 
 def ball(radius=0.17):
-    """An icosahedron, each face of which is divided into four."""
+    """An icosahedron with each face divided into four."""
     g = (1 + sqrt(5)) / 2
     corners = [(s * a, t * b, 0) for a, b in ((1, g),) for s in (-1, 1) for t in (-1, 1)]
     corners = [p[k:] + p[:k] for k in range(3) for p in corners]

@@ -1,4 +1,4 @@
-"""Reads logs with pickle and NumPy alone, and prints the kit's scores of them as JSON.
+"""Reads logs with only pickle and NumPy, and prints the kit's scores of them as JSON.
 
 Usage: read_logs.py TRAINING.pkl ...           a score for each
        read_logs.py --evaluation EVALUATION.pkl   shape, type and sum of qpos, and the information

@@ -1,4 +1,4 @@
-//! Compares documents with MuJoCo: random ones, of which it keeps those that differ, and public ones.
+//! Compares documents with MuJoCo: random ones, keeping those that differ, and public ones.
 
 use std::ops::Range;
 use std::path::{Path, PathBuf};

@@ -1,4 +1,4 @@
-//! Eyes of many environments on a GPU, beside MuJoCo's own renderer and MuJoCo Warp's.
+//! Eyes of many environments on a GPU, compared with MuJoCo's own renderer and MuJoCo Warp's.
 
 mod others;
 mod ours;

@@ -1,4 +1,4 @@
-//! Cost of whole steps beside the Python kit.
+//! Cost of whole steps compared with the Python kit.
 
 use std::fmt::Display;
 use std::fs::File;
@@ -140,7 +140,7 @@ struct KitEnv {
 }
 
 impl KitEnv {
-    /// Starts the process and waits until the environment is there.
+    /// Starts the process and waits until the environment is ready.
     fn start(kit: &Path, python: &Path, task: &Value) -> Result<Self, String> {
         let script = python::script("kit_speed.py");
         let cannot = |e: &dyn Display| format!("cannot run {} {}: {e}", python.display(), script.display());

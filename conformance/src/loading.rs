@@ -117,7 +117,7 @@ pub fn compare_bytes(
     }
 }
 
-/// An array of our compiled model beside MuJoCo's.
+/// An array of our compiled model and the same array of MuJoCo's.
 pub struct Distance {
     /// Name in MuJoCo.
     pub name: &'static str,

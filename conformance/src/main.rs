@@ -146,7 +146,7 @@ fn speeds(filter: &str, batches: usize, pictures: Option<bool>, kit: Option<&Pat
     kit_speed::print(&kit, &python, filter)
 }
 
-/// Returns the documents of a process that another one has started, which is between processes of this program and not in its help.
+/// Returns the documents assigned to a worker process. This program starts its own workers, so the options are not in its help.
 fn part(from: Option<String>, to: Option<String>) -> Result<Option<Range<u64>>, String> {
     if from.is_none() && to.is_none() {
         return Ok(None);

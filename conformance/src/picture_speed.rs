@@ -1,4 +1,4 @@
-//! Cost of pictures beside MuJoCo's own renderer.
+//! Cost of pictures compared with MuJoCo's own renderer.
 
 use std::path::Path;
 use std::time::Instant;

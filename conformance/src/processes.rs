@@ -1,4 +1,4 @@
-//! Documents in processes of their own, so that one at which MuJoCo falls ends no others.
+//! Runs documents in separate processes, so that one that crashes MuJoCo does not end the others.
 //!
 //! A process writes the number of each document before it starts it, and the result as JSON after it. If an invalid access to memory
 //! kills the process, which safe Rust never causes, the last number is the document at which MuJoCo crashed. Another process continues
@@ -16,7 +16,7 @@ use crate::live::parallel;
 /// Word at the beginning of a line with the number of a document.
 const AT: &str = "at ";
 
-/// Word at the beginning of a line with what came out.
+/// Word at the beginning of a line with a result.
 const DONE: &str = "done ";
 
 /// A document in another process.
@@ -28,7 +28,7 @@ pub enum Ran<T> {
     Fell,
 }
 
-/// Runs documents `0..count`, `length` in a process and as many processes at once as there are cores. `child` makes the command that calls
+/// Runs documents `0..count`, `length` per process, with one process per core at a time. `child` makes the command that calls
 /// [`in_child`] for a range.
 ///
 /// # Errors
@@ -128,7 +128,7 @@ pub fn in_child<T: Serialize>(range: Range<u64>, mut one: impl FnMut(u64) -> T) 
 mod tests {
     use super::*;
 
-    /// A process that says ten times the number of each document, and ends at the third as `end` says.
+    /// A process that answers ten times the number of each document, and ends at the third one as `end` says.
     fn child(range: &Range<u64>, end: &str) -> Command {
         let one = |k: u64| match k {
             3 => format!("echo at 3; {end};"),

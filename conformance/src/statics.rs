@@ -16,7 +16,7 @@ pub enum Scale {
     Change,
 }
 
-/// A quantity beside MuJoCo's.
+/// A quantity compared with MuJoCo's.
 pub struct Compared {
     /// Name in MuJoCo.
     pub name: &'static str,

@@ -74,7 +74,7 @@ function copied(file) {
   return `/${place}${text ? ".txt" : ""}`;
 }
 
-/** Returns where a link of a page leads on the site. */
+/** Returns the target of a page's link on the site. */
 function moved(page, link) {
   if (/^(https?:|mailto:|#|\/)/.test(link) || link.includes("::")) return link;
   const [path, anchor = ""] = link.split(/(?=#)/);
@@ -95,7 +95,7 @@ function moved(page, link) {
   return copied(file) + anchor;
 }
 
-/** Moves the links of a page, but those in its code. */
+/** Adjusts the links of a page, except those in its code. */
 function rewritten(page, text) {
   let fence = "";
   const lines = text.split("\n").map((line) => {

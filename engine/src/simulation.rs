@@ -55,7 +55,7 @@ pub enum SimulationError {
     Unknown {
         /// Kind of the element.
         kind: &'static str,
-        /// The name asked for.
+        /// The requested name.
         name: String,
         /// The names of all elements of the kind.
         names: Vec<String>,
@@ -213,14 +213,14 @@ impl Simulation {
         Ok(self.engine.forward(&mut self.state)?)
     }
 
-    /// Starts anew at `qpos0`, at rest.
+    /// Restarts at `qpos0`, at rest.
     #[doc(alias = "mj_resetData")]
     pub fn reset(&mut self) {
         self.state = self.engine.new_state();
         self.settle();
     }
 
-    /// Starts anew at a keyframe.
+    /// Restarts at a keyframe.
     ///
     /// # Errors
     /// The model has no keyframe with this name.

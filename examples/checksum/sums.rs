@@ -9,8 +9,8 @@ use crate::cases::{Case, blueprint};
 /// A checksum, or the reason for its absence.
 pub type Sum = Result<u64, Box<dyn std::error::Error>>;
 
-/// Runs a case for some random steps from seed 0, with a new episode where one ends, and returns what it folded on the way: rewards, and
-/// how episodes end.
+/// Runs a case for some random steps from seed 0, with a new episode where one ends, and returns a checksum of the rewards and of the
+/// ends of episodes.
 fn walk(env: &mut Env, steps: usize) -> Sum {
     let (mut action, mut hash) = (Vec::new(), Checksum::default());
     for _ in 0..steps {
@@ -56,7 +56,8 @@ pub fn variant(case: Case, steps: usize, threads: usize) -> Sum {
 /// Environments of a vector.
 const ENVS: usize = 5;
 
-/// Returns all that a vector returns in random steps from seed 0, every other one in two halves, environment after environment.
+/// Returns everything that a vector returns in random steps from seed 0, every other one in two halves, environment after
+/// environment.
 pub fn vector(case: Case, steps: usize, threads: usize) -> Sum {
     let blueprint = blueprint(case, |config| babybench::Config {
         max_episode_steps: 7,
@@ -117,7 +118,7 @@ pub fn restored(case: Case, bytes: Vec<u8>) -> Sum {
     Ok(hash.0)
 }
 
-/// Returns pictures of the room, and all that both eyes can see, after a few random steps from seed 0.
+/// Returns pictures of the room, and everything that both eyes can see, after a few random steps from seed 0.
 pub fn pictures(case: Case) -> Sum {
     let blueprint = blueprint(case, |config| config)?;
     let mut env = blueprint.env()?;

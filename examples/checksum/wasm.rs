@@ -60,7 +60,7 @@ pub extern "C" fn keep(index: usize) -> usize {
     }
 }
 
-/// Goes on from the snapshot in memory, and returns the length of the line.
+/// Continues from the snapshot in memory, and returns the length of the line.
 #[unsafe(no_mangle)]
 pub extern "C" fn restore(index: usize) -> usize {
     let taken = std::mem::take(&mut *bytes());

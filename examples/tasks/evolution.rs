@@ -1,5 +1,5 @@
-//! Evolution of numbers: separable CMA-ES, whose cost grows with their count alone (R. Ros and N. Hansen, "A simple modification in
-//! CMA-ES achieving linear time and space complexity", 2008).
+//! Evolution of a vector of numbers by separable CMA-ES, whose cost is linear in their count (R. Ros and N. Hansen, "A simple
+//! modification in CMA-ES achieving linear time and space complexity", 2008).
 
 use babybench::spaces::NumpyRng;
 

@@ -46,7 +46,7 @@ impl Design {
         self.features.len() - 1
     }
 
-    /// Lets a number of the action depend on a feature.
+    /// Makes a number of the action depend on a feature.
     pub fn term(&mut self, action: usize, feature: usize, scale: f64) {
         self.terms.push((action, feature, scale));
     }

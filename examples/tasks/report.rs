@@ -1,4 +1,4 @@
-//! A report on the policies of a folder beside those that learn nothing: tables and learning curves.
+//! A report on the policies of a folder, compared with policies that do not learn: tables and learning curves.
 
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
@@ -17,7 +17,7 @@ const EPISODES: u64 = 20;
 /// Size of a panel, and of the margins of its curve: left, top, right, bottom.
 const PANEL: [f64; 2] = [300.0, 190.0];
 const MARGIN: [f64; 4] = [48.0, 28.0, 14.0, 34.0];
-/// Panels beside each other.
+/// Panels side by side.
 const COLUMNS: usize = 3;
 const STYLE: &str = "text{font:12px Helvetica,Arial,sans-serif;fill:#5c6675}.title{fill:#1d2430;font-size:13px}\
     .grid{stroke:#e2e3e6}.all{fill:none;stroke:#5c6675;stroke-opacity:.5;stroke-width:1.2}.mean{fill:none;stroke:#2e86de;stroke-width:2}\
@@ -30,7 +30,7 @@ struct Entry {
     name: String,
 }
 
-/// Writes `README.md` and `curves.svg` beside the policies of a folder.
+/// Writes `README.md` and `curves.svg` next to the policies of a folder.
 pub fn write(folder: &Path) -> Result<(), Error> {
     let (mut returns, mut successes, mut panels) = (String::new(), String::new(), String::new());
     let entries = entries(folder)?;

@@ -1,5 +1,5 @@
-//! Heights in both formats: what is read has as many numbers as it says, within the limits, and makes a model or an error that names the
-//! document.
+//! Heights in both formats. What is read has the announced number of values, within the limits, and makes a model or an error that names
+//! the document.
 #![no_main]
 
 use babybench::assets::MemoryAssets;

@@ -7,7 +7,7 @@ use babybench::render::Scenery;
 use babybench::{mjcf_loader, physics};
 use libfuzzer_sys::fuzz_target;
 
-/// Larger models are left alone: their cost hides others.
+/// Larger models are skipped, because their cost hides that of others.
 const LARGE: usize = 200;
 
 fuzz_target!(|data: &[u8]| {

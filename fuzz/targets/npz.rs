@@ -1,4 +1,4 @@
-//! NumPy archives: arrays have as many numbers as their shape says.
+//! NumPy archives. The length of every array matches its shape.
 #![no_main]
 
 use babybench::Limits;

@@ -9,7 +9,7 @@ use babybench::physics::{Engine, SoftEngine, SoftOptions, compile};
 use babybench::rapier::{RapierModel, RapierOptions};
 use libfuzzer_sys::fuzz_target;
 
-/// Larger models are left alone: their cost hides others.
+/// Larger models are skipped, because their cost hides that of others.
 const LARGE: usize = 40;
 
 /// Returns how many steps a model goes: most things happen in the first ones, so only one model in four goes far.

@@ -1,4 +1,4 @@
-//! Snapshots from bytes: what is restored goes on or says why not.
+//! Snapshots from bytes. A restored environment continues, or an error says why it cannot.
 #![no_main]
 
 #[path = "common/env.rs"]
@@ -15,7 +15,7 @@ thread_local! {
     static SMALL: RefCell<Env> = RefCell::new(env::small());
 }
 
-/// Bytes before what the checksum covers, of which the last eight are the checksum.
+/// Bytes before those that the checksum covers; the last eight are the checksum itself.
 const HEADER: usize = 32;
 
 /// The checksum of a snapshot, eight bytes at a time.
@@ -26,7 +26,7 @@ fn checksum(bytes: &[u8]) -> u64 {
     rest.iter().fold(h, |h, b| mix(h, u64::from(*b)))
 }
 
-/// Returns a snapshot with some bytes replaced: data says where, then with what.
+/// Returns a snapshot with some bytes replaced. `data` lists the places and the new bytes.
 fn changed(data: &[u8], snapshot: &Snapshot) -> Vec<u8> {
     let mut bytes = snapshot.as_bytes().to_vec();
     for change in data.chunks(10) {

@@ -134,7 +134,7 @@ class Recorder:
 
 @final
 class Folder:
-    """A folder that belongs to this process as long as the object lives."""
+    """A folder that this process owns until the object is freed."""
 
     def __new__(cls, folder: str | os.PathLike[str]) -> Folder:
         """Locks the folder; an ``OSError`` names the process that holds it."""
@@ -198,7 +198,7 @@ class Env:
     """The names of :meth:`state_array`."""
 
     def __new__(cls, blueprint: Blueprint, views: bool = False, lazy: bool = False) -> Env:
-        """Makes an environment; with ``views``, observations are read-only arrays that each step brings up to date.
+        """Makes an environment; with ``views``, observations are read-only arrays that each step updates.
 
         With ``lazy``, observations and their spaces are without images: :meth:`eyes` has them.
         """
@@ -241,7 +241,7 @@ class Env:
         """Returns the reward of each row of goals, (K, goal) twice, and terms, (K, reward_terms)."""
     @property
     def reward_terms(self) -> int:
-        """Number of values that the reward depends on beside goals."""
+        """Number of values besides goals that the reward depends on."""
     def accumulate_info(self, on: bool) -> None:
         """Sets whether resets keep the counters and lists of the behavior."""
     def close(self) -> None:
@@ -254,7 +254,7 @@ class Env:
         """Whether a step may follow: there was a reset, and nothing has diverged since."""
     @property
     def blueprint(self) -> Blueprint:
-        """What it was made from."""
+        """The blueprint that it was made from."""
 
     @property
     def action_bounds(self) -> tuple[npt.NDArray[np.float32], npt.NDArray[np.float32]]:
@@ -285,7 +285,7 @@ class Env:
     def push(
         self, body: int, force: Sequence[float], torque: Sequence[float], point: Sequence[float] | None = None
     ) -> None:
-        """Puts a force (N, world) at a point (m, world) and a torque (N m) in the place of those that act on a body."""
+        """Replaces the forces on a body by a force (N, world) at a point (m, world) and a torque (N m)."""
     def apply_force(self, body: int, force: Sequence[float], point: Sequence[float]) -> None:
         """Adds a force (N, world) on a body at a point (m, world); it acts until :meth:`release_forces` or a reset."""
     def release_forces(self) -> None:
@@ -303,17 +303,17 @@ class Env:
     def resume(self, snapshot: bytes) -> dict[str, _Array]:
         """Goes back to a snapshot, with touch and images computed; returns the observation."""
     def swap_facial_expression(self, expression: str) -> None:
-        """Lets MIMo make another face, in all that is drawn from now on.
+        """Changes MIMo's face in all later pictures.
 
         Raises:
             ValueError: The face does not exist.
         """
     def model_array(self, name: str) -> _Array:
-        """Returns an array of the model by MuJoCo's name, with what was changed, or an option: ``opt.gravity``."""
+        """Returns an array of the model by MuJoCo's name, with all changes, or an option: ``opt.gravity``."""
     def change_model(self, changes: dict[str, _Array]) -> None:
         """Changes numbers of the model from the next step on; the arrays are whole."""
     def set_age(self, age: float | None) -> dict[str, Any]:
-        """Lets MIMo grow to an age in months; returns the configuration. The next call is a reset."""
+        """Sets MIMo's age, months; returns the configuration. The next call is a reset."""
     @property
     def age(self) -> float | None:
         """The age of MIMo's body, months."""
@@ -332,7 +332,7 @@ class Env:
     def touch_width(self) -> int:
         """Values of each touch sensor: 1 or 3; 0 without touch."""
     def touch_layout(self) -> list[TouchBody]:
-        """Returns where the touch sensors are, body by body, in the order of the observation."""
+        """Returns the positions of the touch sensors, body by body, in the order of the observation."""
     def touch_of(self, body: int) -> npt.NDArray[np.float32]:
         """Returns the values of the sensors of a body, (sensors, 1 or 3), N; (0, 1 or 3) if it has none."""
     def touched(self) -> tuple[npt.NDArray[np.int64], npt.NDArray[np.float32]]:
@@ -349,7 +349,7 @@ class Env:
 
     @property
     def proprioception_entries(self) -> list[tuple[str, str, int, int]]:
-        """Component, name, first and last plus one place of each entry of the observation."""
+        """Component, name, first index and end index of each entry of the observation."""
 
     def render(self, camera: _Camera, width: int, height: int) -> npt.NDArray[np.uint8]:
         """Draws from a camera of the scene or a free one, (height, width, 3), red, green, blue, rows from the top."""
@@ -371,7 +371,7 @@ class ActionNoise:
 
 @final
 class View:
-    """A page on this machine that shows an environment, which a program keeps alive."""
+    """A page on this machine that shows an environment while a program steps it."""
 
     def __new__(cls, title: str, port: int = 0) -> View:
         """Opens it at a port, or at any free one for 0; ``OSError`` if it is taken."""
@@ -395,12 +395,12 @@ class View:
 
 @final
 class Watch:
-    """Arrays that a program may write to, and what was in them."""
+    """Arrays that a program may write to, and their earlier contents."""
 
     def __new__(cls, arrays: Sequence[_Array]) -> Watch:
         """Stores the contents of the arrays."""
     def changed(self, arrays: Sequence[_Array]) -> list[int]:
-        """Returns the numbers of those that differ, of the same arrays in the same order; the next call compares with these."""
+        """Returns the numbers of the arrays that differ; the next call compares with these arrays."""
 
 @final
 class MjcfDocument:
@@ -414,25 +414,25 @@ class MjcfDocument:
     def from_file(path: str, files: Mapping[str, bytes], folder: str | os.PathLike[str]) -> MjcfDocument:
         """Reads a file of a folder."""
     def copy(self) -> MjcfDocument:
-        """Returns a document of its own with the same elements under the same numbers."""
+        """Returns a separate document with the same elements under the same numbers."""
     def root(self) -> int:
         """Returns the element of the whole document."""
     def world(self) -> int:
         """Returns the world."""
     def section(self, name: str) -> int:
-        """Returns the section with a name; a new one where there is none."""
+        """Returns the section with a name, or creates it."""
     def add(self, parent: int, element: str) -> int:
-        """Adds an element behind those in another."""
+        """Appends an element to another."""
     def insert(self, parent: int, element: str, index: int) -> int:
         """Adds an element before another."""
     def remove(self, number: int, alone: bool) -> None:
-        """Removes an element, with what refers to it unless it goes alone."""
+        """Removes an element, and also the elements that refer to it unless ``alone`` is set."""
     def contains(self, number: int) -> bool:
         """Returns whether an element is in the document."""
     def set(self, number: int, name: str, value: str) -> None:
         """Sets an attribute."""
     def unset(self, number: int, name: str) -> None:
-        """Takes an attribute away."""
+        """Removes an attribute."""
     def get(self, number: int, name: str) -> str | None:
         """Returns the text of an attribute that is given."""
     def value(self, number: int, name: str) -> str:
@@ -458,7 +458,7 @@ class MjcfDocument:
     def move_to(self, number: int, parent: int) -> None:
         """Moves an element into another."""
     def generalize(self, number: int) -> None:
-        """Makes an actuator of another kind a general one that acts the same."""
+        """Turns an actuator of another kind into an equivalent general one."""
     def write(self) -> str:
         """Returns the document as MJCF."""
 
@@ -476,7 +476,7 @@ class PhysicsModel:
     def from_text(text: str, files: Mapping[str, bytes], folder: str | os.PathLike[str]) -> PhysicsModel:
         """Compiles a text, with files that replace those in and around a folder that it names."""
     def copy(self) -> PhysicsModel:
-        """Returns a model of its own with the same numbers."""
+        """Returns a separate model with the same numbers."""
     @property
     def memory(self) -> _Floats:
         """The memory of the numbers that a program may change; steps read them."""
@@ -495,7 +495,7 @@ class PhysicsModel:
     def set_option(self, name: str, value: int) -> None:
         """Sets a whole number among the options."""
     def extras(self) -> dict[str, Any]:
-        """Returns MuJoCo's arrays of what the engine keeps in another form."""
+        """Returns, as MuJoCo's arrays, what the engine keeps in another form."""
     def shapes(self) -> dict[str, _Array]:
         """Returns the arrays of meshes, height fields, skins and flexes under MuJoCo's names."""
 
@@ -542,7 +542,7 @@ class PhysicsData:
     def sensordata(self) -> _Floats:
         """Returns the values of the sensors as they were last computed."""
     def copy_from(self, other: PhysicsData) -> None:
-        """Takes over everything from another state of the same model."""
+        """Copies everything from another state of the same model."""
     def contacts(self) -> dict[str, _Array]:
         """Returns the contacts as arrays, one entry for each."""
     @property
@@ -562,7 +562,7 @@ class PhysicsRenderer:
     """Draws states of a model."""
 
     def __new__(cls, model: PhysicsModel, shown: tuple[tuple[bool, ...], ...] | None = None) -> PhysicsRenderer:
-        """Decodes the textures of a model. ``shown``: which geoms, sites, groups of tendons and groups of skins are drawn."""
+        """Decodes the textures of a model. ``shown``: the geoms, sites, groups of tendons and groups of skins to draw."""
     def draw(
         self,
         data: PhysicsData,
@@ -571,7 +571,7 @@ class PhysicsRenderer:
         what: str,
         markers: Sequence[tuple[int, Sequence[float], Sequence[float], Sequence[float], Sequence[float]]],
     ) -> _Array:
-        """Draws ``rgb``, ``depth`` or ``segmentation`` of what the arrays of a state show.
+        """Draws ``rgb``, ``depth`` or ``segmentation`` of a state, as its arrays show it.
 
         ``camera`` is one of the model's, or nothing for the free one behind it: the point that it looks at, distance, azimuth
         and elevation. ``size`` is width and height. ``markers`` come behind the geoms of the model: shape, size, position,
@@ -604,7 +604,7 @@ class VectorEnv:
     def check_memory(
         blueprint: Blueprint, count: int, autoreset: str, threads: int, max_memory: int | None, copies: int
     ) -> None:
-        """Refuses more environments than fit, before there are lists of as many.
+        """Refuses more environments than fit into memory, before any list of that length is made.
 
         Raises:
             MemoryError: The text says how many would fit.
@@ -622,7 +622,7 @@ class VectorEnv:
     def run(self, actions: npt.ArrayLike) -> None:
         """Applies actions, (K, N, action size), one after the other, and returns nothing."""
     def send(self, actions: npt.ArrayLike, ids: Sequence[int] | npt.NDArray[np.integer[Any]]) -> None:
-        """Hands actions, (K, action size), to K environments and returns at once."""
+        """Sends actions, (K, action size), to K environments and returns at once."""
     def recv(
         self, n: int, copy: bool = False
     ) -> tuple[dict[str, _Array], _Floats, _Flags, _Flags, npt.NDArray[np.int64]]:
@@ -638,7 +638,7 @@ class VectorEnv:
     def flags(self) -> list[_Array]:
         """Rewards, terminated, truncated of the last step (N)."""
     def infos(self) -> dict[str, _Array]:
-        """Returns fresh arrays, a row for each of the last rows.
+        """Returns new arrays with a row for each of the last rows.
 
         ``steps`` (N); ``touches`` (N, 2, geoms), which geoms the right and the left palm have touched, 1 or 0;
         ``regards`` (N, 4), how often hands were in view, and ``page_regards`` and ``kit_regards``, counted either way;
@@ -656,10 +656,10 @@ class VectorEnv:
     def compute_reward(
         self, env: int, achieved: npt.ArrayLike, desired: npt.ArrayLike, terms: npt.ArrayLike
     ) -> _Floats:
-        """Returns what one environment's task rewards: see :meth:`Env.compute_reward`."""
+        """Returns the rewards of one environment's task: see :meth:`Env.compute_reward`."""
     @property
     def reward_terms(self) -> int:
-        """Number of values that rewards depend on beside goals."""
+        """Number of values besides goals that rewards depend on."""
     @property
     def num_envs(self) -> int:
         """Number of environments."""
@@ -689,11 +689,11 @@ class VectorEnv:
     def restore(self, env: int, snapshot: bytes) -> None:
         """Takes one environment back to a snapshot."""
     def model_array(self, env: int, name: str) -> _Array:
-        """Returns an array of the model by MuJoCo's name, with what was changed, or an option: ``opt.gravity``."""
+        """Returns an array of the model by MuJoCo's name, with all changes, or an option: ``opt.gravity``."""
     def change_model(self, env: int, changes: dict[str, _Array]) -> None:
         """Changes numbers of the model from the next step on; the arrays are whole."""
     def set_age(self, env: int, age: float | None) -> dict[str, Any]:
-        """Lets the MIMo of one environment grow to an age in months; returns its configuration."""
+        """Sets the age of one environment's MIMo, months; returns its configuration."""
     def model_changes(self, env: int) -> dict[str, _Array]:
         """Returns the arrays of one environment that differ from those of its scene."""
     def lock(self, env: int, target: str | int, angle: float = 0.0) -> LockReport:
@@ -722,9 +722,9 @@ class Parts:
     def set_position(self, qpos: npt.ArrayLike, qvel: npt.ArrayLike) -> None:
         """Sets positions (nq,) and velocities (nv,) for the next physics step."""
     def set_action(self, action: npt.ArrayLike) -> None:
-        """Gives an action, (n,), to the actuators."""
+        """Passes an action, (n,), to the actuators."""
     def substep(self) -> None:
-        """Updates the actuators, as before each physics step of a step but the first."""
+        """Updates the actuators, as before each physics step of a step except the first."""
     def physics_step(self) -> None:
         """Advances by one physics step, without sensing."""
     def observe(self) -> None:
@@ -763,7 +763,7 @@ class Parts:
     def fill_position(self, position: Sequence[_Floats]) -> None:
         """Writes the present positions and velocities."""
     def differences(self, arrays: Sequence[_Floats]) -> int:
-        """Tells which arrays differ from the state, bits 0 to 7.
+        """Returns which arrays differ from the state, as bits 0 to 7.
 
         They are ``qpos``, ``qvel``, ``ctrl``, ``act``, ``qfrc_applied``, ``xfrc_applied``, ``mocap_pos`` and ``mocap_quat``.
         """
@@ -789,7 +789,7 @@ def model_extras(blueprint: Blueprint) -> dict[str, Any]:
     """Returns names of textures and materials, the number of lights, and MuJoCo's arrays of equality constraints."""
 
 def model_columns(env: Env) -> dict[str, _Array]:
-    """Returns fresh arrays of the look of an environment's model, and of its equalities and keyframes."""
+    """Returns new arrays of the look of an environment's model, and of its equalities and keyframes."""
 
 def paint(env: Env, looks: Mapping[str, npt.ArrayLike]) -> None:
     """Changes the look of an environment's model at any time: whole arrays by name, as :func:`model_columns` returns them."""

@@ -125,7 +125,7 @@ def element(wanted: Union[str, int], kind: str, blueprint: _native.Blueprint) ->
 
 
 def part_names(blueprint: _native.Blueprint) -> list[str]:
-    """Returns the part that each geom is: the body, and which of its geoms."""
+    """Returns the part of each geom: the body, and the index among its geoms."""
     bodies = [blueprint.model_names["body"][b] for b in blueprint.model_array("geom_bodyid")]
     count = {body: bodies.count(body) for body in set(bodies)}
     seen: dict[str, int] = dict.fromkeys(bodies, 0)
@@ -137,7 +137,7 @@ def part_names(blueprint: _native.Blueprint) -> list[str]:
 
 
 def names_of(kind: str, blueprint: _native.Blueprint) -> list[str]:
-    """Returns the names of elements by id, as the document gives them; a geom without one has that of its part."""
+    """Returns the names of elements by id, as the document gives them; a geom without a name has that of its part."""
     names = list(blueprint.model_names[kind])
     if kind != "geom":
         return names

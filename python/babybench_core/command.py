@@ -31,7 +31,7 @@ def _parser(program: str) -> argparse.ArgumentParser:
 
 
 def _run(script: str, arguments: Sequence[str], module: bool) -> None:
-    """Runs a script as Python does, but for who serves ``mimoEnv``; processes that it starts inherit that."""
+    """Runs a script as Python does, except that this package provides ``mimoEnv``; its child processes inherit that."""
     try:
         with starter_kit.needed("babybench run SCRIPT"):
             from babybench_kit import swap
@@ -51,7 +51,7 @@ def _run(script: str, arguments: Sequence[str], module: bool) -> None:
 
 
 def _program() -> str:
-    """Returns what users type to get here."""
+    """Returns the command that users type to get here."""
     called = os.path.basename(sys.argv[0] or "")
     if called != "__main__.py":
         return "babybench"
@@ -59,7 +59,7 @@ def _program() -> str:
 
 
 def main(arguments: Optional[Sequence[str]] = None) -> None:
-    """Does what the arguments of a command line say.
+    """Runs the command with the arguments of a command line.
 
     Raises:
         SystemExit: It has failed.

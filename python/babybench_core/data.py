@@ -88,12 +88,12 @@ class Episode(Mapping[str, np.ndarray]):
 
     @property
     def finished(self) -> bool:
-        """Whether the episode was ended; otherwise the program gave the recorder up, or ended, in the middle of it."""
+        """Whether the episode was ended. Otherwise the program dropped the recorder, or ended, during the episode."""
         return not self.description.get("unfinished", False)
 
     @property
     def model(self) -> dict[str, np.ndarray]:
-        """What a program had changed of the model before the episode, as ``env.change_model`` takes it."""
+        """A program's changes to the model before the episode, as ``env.change_model`` takes them."""
         wanted = [name for name in self._names if name.startswith(_MODEL)]
         if not wanted:
             return {}
@@ -241,7 +241,7 @@ class Record(Exports, Mapping[int, Episode]):
         return f"<Record {self.folder}: {len(self)} episodes>"
 
     def skin(self) -> dict[str, np.ndarray]:
-        """Returns where the touch sensors are: ``body`` (N), ids, and ``position`` (N, 3) in the frames of the bodies, m."""
+        """Returns the places of the touch sensors: ``body`` (N), ids, and ``position`` (N, 3) in the frames of the bodies, m."""
         with np.load(self.folder / "skin.npz", allow_pickle=False) as archive:
             return {name: archive[name] for name in archive.files}
 

@@ -1,4 +1,4 @@
-"""One environment, behind today's Gymnasium interface."""
+"""One environment, behind the current Gymnasium interface."""
 
 from __future__ import annotations
 
@@ -304,10 +304,10 @@ class Env(SceneAccess, gymnasium.Env[Observation, npt.NDArray[Any]]):
         return list(self._core.reflexes)
 
     def set_age(self, age: Optional[float]) -> None:
-        """Lets MIMo grow to an age in months, 0 to 24, or back to MIMo's own proportions (``None``); the next call is a reset.
+        """Sets MIMo's age, 0 to 24 months, or restores his own proportions (``None``); the next call must be a reset.
 
         Locks and the generator of random choices stay; changes of the model go. Names and ids are the same at every age. So is
-        ``observation_space``, but for the length of touch without ``touch_grows``.
+        ``observation_space``, except for the length of touch without ``touch_grows``.
 
         Example:
             >>> import babybench
@@ -406,7 +406,7 @@ class Env(SceneAccess, gymnasium.Env[Observation, npt.NDArray[Any]]):
         torque: Sequence[float] = (0.0, 0.0, 0.0),
         point: Optional[Sequence[float]] = None,
     ) -> None:
-        """Puts a force and a torque on a body, in the place of those of an earlier push; they act in every step until a reset.
+        """Puts a force and a torque on a body, replacing those of an earlier push; they act until a reset.
 
         Args:
             body: The name or the id of a body.

@@ -80,7 +80,7 @@ class Film:
         return len(self._pictures)
 
     def add(self) -> None:
-        """Takes note of a step, and draws a picture if it is time for the next one."""
+        """Counts a step, and draws a picture if it is time for the next one."""
         if self._passed >= self._next - 1e-9:
             self._pictures.append(self._inside.picture(self._camera, *self._size))
             self._next += 1 / self._fps

@@ -1,4 +1,4 @@
-"""Rewards of goals, as Gymnasium-Robotics and hindsight replay ask for them."""
+"""Rewards of goals, as Gymnasium-Robotics and hindsight replay request them."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Words on locks: which joint was meant, and angles out of range."""
+"""Messages about locks: suggestions for wrong names, and angles out of range."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ _PARTS = ("hands", "fingers", "arms", "feet", "legs", "body", "head", "eyes")
 
 @contextmanager
 def known(target: Union[str, int], blueprint: _native.Blueprint) -> Iterator[None]:
-    """Adds to the error of a joint that does not exist which one may be meant."""
+    """Adds a suggestion to the error of a joint that does not exist."""
     try:
         yield
     except KeyError as error:

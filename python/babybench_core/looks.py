@@ -1,4 +1,4 @@
-"""The look of a model: what pictures follow, and no step reads."""
+"""The look of a model: values that pictures follow and no step reads."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ LOOKS = frozenset(
 
 
 def is_look(name: str) -> bool:
-    """Tells whether pictures follow an array, or a setting of ``model.vis``."""
+    """Returns whether pictures follow an array, or a setting of ``model.vis``."""
     return name in LOOKS or name.startswith("vis_")
 
 
@@ -34,7 +34,7 @@ def of(engine: _native.Env) -> dict[str, NDArray[Any]]:
 
 
 def take(engine: _native.Env, given: Mapping[str, NDArray[Any]]) -> dict[str, NDArray[Any]]:
-    """Gives an environment the look of another one, of which it is a copy, and returns what has changed."""
+    """Applies the look of an environment to a copy of it, and returns what has changed."""
     own = of(engine)
     others = {name: array for name, array in given.items() if not np.array_equal(array, own[name])}
     if others:

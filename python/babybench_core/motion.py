@@ -22,7 +22,7 @@ MotionLike = Union[str, "os.PathLike[str]", Mapping[str, Any]]
 
 @dataclass(frozen=True)
 class Played:
-    """Outcome of playing a motion."""
+    """The result of playing a motion."""
 
     record: Record
     """The record of MIMo's sensations."""

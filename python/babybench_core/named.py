@@ -36,7 +36,7 @@ PREFIX = {"joint": "jnt", "camera": "cam", "equality": "eq", "texture": "tex", "
 
 
 def widened(values: NDArray[Any], width: int) -> NDArray[Any]:
-    """Returns rows of a width, filled up with zeros."""
+    """Returns rows of a width, padded with zeros."""
     rows = values.reshape(len(values), -1) if len(values) else np.zeros((0, width), values.dtype)
     wide = np.zeros((len(rows), width), dtype=rows.dtype)
     wide[:, : rows.shape[1]] = rows

@@ -40,7 +40,7 @@ class Orbit:
         self.lookat += (up * down - right * across) * self._height(self.distance)
 
     def zoom(self, factor: float) -> None:
-        """Goes nearer or farther."""
+        """Moves nearer or farther."""
         self.distance = min(max(self.distance * factor, 0.1), 30.0)
 
     def axes(self) -> tuple[Floats, Floats, Floats]:
@@ -51,7 +51,7 @@ class Orbit:
         return forward, np.cross(forward, up), up
 
     def _height(self, depth: float) -> float:
-        """Returns how high the part of the world is that the picture shows at a distance from its plane."""
+        """Returns the height of the part of the world that the picture shows at a distance from its plane."""
         return 2 * depth * math.tan(math.radians(self.fovy) / 2)
 
     def place(self, x: float, y: float, depth: float, size: tuple[int, int]) -> Floats:

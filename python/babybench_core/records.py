@@ -26,7 +26,7 @@ class TouchBody(TypedDict):
 
 
 class LockReport(TypedDict):
-    """Outcome of a lock: names of joints."""
+    """The result of a lock: names of joints."""
 
     changed: list[str]
     """Joints that were locked or unlocked."""

@@ -53,7 +53,7 @@ class VecEnv(BaseVecEnv):
     """
 
     def __init__(self, config: Any = "self_touch", num_envs: Optional[int] = None, **arguments: Any) -> None:
-        """Builds a vector; the arguments are those of :class:`babybench.VectorEnv` but ``autoreset_mode`` and ``copy``.
+        """Builds a vector; the arguments are those of :class:`babybench.VectorEnv` except ``autoreset_mode`` and ``copy``.
 
         Raises:
             ValueError: As :class:`babybench.VectorEnv`; ``copy=False``.
@@ -151,9 +151,9 @@ def sparse(features_dim: int = 64) -> dict[str, Any]:
     """Returns keyword arguments for PPO and A2C with ``"MultiInputPolicy"``, with which they learn faster from a whole skin.
 
     The networks are those of Stable-Baselines3 without these arguments, two layers of 64 with tanh for actions and two for
-    values. Their outputs and gradients are the same but for rounding, as what is left out is 0. Normalised observations
-    (``VecNormalize``) are not 0 where nothing is felt, and gain nothing. Do not give ``policy_kwargs`` beside it: change those
-    that it returns.
+    values. Their outputs and gradients are the same up to rounding, because the omitted numbers are 0. Normalised
+    observations (``VecNormalize``) are not 0 where nothing is felt, and gain nothing. Do not give ``policy_kwargs``
+    beside it: change those that it returns.
 
     Example:
         .. code-block:: python

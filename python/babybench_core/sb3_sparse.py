@@ -22,7 +22,7 @@ MANY = 1024
 
 
 class SparseRolloutBuffer(DictRolloutBuffer):
-    """A rollout that hands out, of each sense with many numbers, those that are not always 0 in it.
+    """A rollout whose batches contain, for each sense with many numbers, only those that are not always 0.
 
     The tensors of a batch say in their attribute ``columns`` which these are, as :class:`SparseExtractor` needs to know.
     """
@@ -52,7 +52,7 @@ class SparseRolloutBuffer(DictRolloutBuffer):
 
 
 class SparseExtractor(BaseFeaturesExtractor):
-    """The first layer of a network, with tanh behind it, for all senses together.
+    """The first layer of a network, followed by tanh, for all senses together.
 
     It computes what a layer over Stable-Baselines3's ``CombinedExtractor`` does: images go through its ``NatureCNN``, and all
     else is one vector.

@@ -1,4 +1,4 @@
-"""The names and the arrays of an environment's scene, and what programs change in them."""
+"""The names and the arrays of an environment's scene, and programs' changes to them."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ class SceneAccess:
 
     @cached_property
     def part_names(self) -> list[str]:
-        """The parts that the ids of geoms mean: the body, and which of its geoms, ``left_hand 1/2``."""
+        """The part of each geom, by id: the body and the index among its geoms, ``left_hand 1/2``."""
         return changes.part_names(self._core.blueprint)
 
     def array(self, name: str, element: Optional[str] = None) -> npt.NDArray[Any]:

@@ -1,4 +1,4 @@
-"""Spaces of Gymnasium from what the native part says."""
+"""Spaces of Gymnasium from the descriptions of the native part."""
 
 from __future__ import annotations
 

@@ -36,13 +36,13 @@ class Spring:
         return self._body is not None
 
     def hold(self, body: int, place: Floats) -> None:
-        """Takes hold of a body at a place of the world, m."""
+        """Grabs a body at a place of the world, m."""
         self._body, self._before = body, None
         self._point = self._frame(body).T @ (place - self._core.state_array("xpos")[body])
         self.target = place
 
     def let_go(self) -> None:
-        """Lets go, and takes the force off."""
+        """Releases the body and removes the force."""
         if self.holds:
             self._core.release_forces()
         self._body = None
@@ -55,7 +55,7 @@ class Spring:
         return at
 
     def pull(self, seconds: float) -> None:
-        """Sets the force of the next step, which lasts so long."""
+        """Sets the force of the next step, given its duration."""
         if self._body is None:
             return
         at = self.at

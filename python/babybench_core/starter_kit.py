@@ -28,7 +28,7 @@ def needed(by: str) -> Iterator[None]:
 
 
 def claim() -> None:
-    """Takes note, where ``babybench-kit`` is installed, that ``import babybench`` came: its ``mimoEnv`` serves from now on."""
+    """If ``babybench-kit`` is installed, records that ``babybench`` was imported: its ``mimoEnv`` serves from now on."""
     try:
         from babybench_kit import swap
     except ModuleNotFoundError as error:

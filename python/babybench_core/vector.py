@@ -65,14 +65,14 @@ _SINGLE = {
 class VectorEnv(gymnasium.vector.VectorEnv):  # type: ignore[type-arg, unused-ignore]
     """Environments that are stepped together, on all cores.
 
-    Environment i returns the same bits as if it were alone, whatever the number of threads. While threads
+    Environment i returns the same bits as if it were alone, for any number of threads. While threads
     step, Python's lock is free.
 
     Information comes as arrays over environments: ``steps`` (N), and by behavior ``touches`` (N, 2, geoms), which geoms
     the right and the left palm have touched in this episode, 1 or 0; or ``regards`` (N, 4), how many steps the right hand,
     then the left, was in the view of the right eye, then of the left, with ``page_regards`` and ``kit_regards``, counted as
     BabyBench's page describes it and as the kit does. ``envs.info(i)`` has the lists and names of one
-    environment. An environment whose simulation diverges is truncated and starts anew; ``infos["failure"]`` says why.
+    environment. An environment whose simulation diverges is truncated and restarts; ``infos["failure"]`` says why.
 
     Example:
         >>> import babybench
@@ -235,11 +235,11 @@ class VectorEnv(gymnasium.vector.VectorEnv):  # type: ignore[type-arg, unused-ig
         return observations, *self._given(*self._core.flags), self._infos()
 
     def step_async(self, actions: npt.ArrayLike) -> None:
-        """Hands all environments an action and returns at once; :meth:`step_wait` waits for them."""
+        """Sends all environments an action and returns at once; :meth:`step_wait` waits for them."""
         self._core.send(actions, np.arange(self.num_envs))
 
     def step_wait(self, **_: object) -> tuple[Observations, npt.NDArray[np.float64], Mask, Mask, dict[str, Any]]:
-        """Waits for what :meth:`step_async` began; rows are in the order of the environments."""
+        """Waits for the step that :meth:`step_async` began; rows are in the order of the environments."""
         received, rewards, terminated, truncated, ids = self._core.recv(self.num_envs)
         order = self._order = np.argsort(ids)
         infos = self._infos(ids)
@@ -276,14 +276,14 @@ class VectorEnv(gymnasium.vector.VectorEnv):  # type: ignore[type-arg, unused-ig
         """Does nothing: :meth:`close` is enough."""
 
     def __del__(self) -> None:
-        """Does nothing: the native part ends its threads when it goes."""
+        """Does nothing: the native part ends its threads when it is freed."""
 
     # --- EnvPool ---
 
     def send(
         self, actions: npt.ArrayLike, ids: Optional[Union[Sequence[int], npt.NDArray[np.integer[Any]]]] = None
     ) -> None:
-        """Hands environments an action each, (K, action size), and returns at once.
+        """Sends an action to each of some environments, (K, action size), and returns at once.
 
         Args:
             actions: The actions.
@@ -302,7 +302,7 @@ class VectorEnv(gymnasium.vector.VectorEnv):  # type: ignore[type-arg, unused-ig
         """Waits for the first environments that are ready, so that a slow one does not hold the others.
 
         Args:
-            batch_size: For how many; by default for all that are under way.
+            batch_size: The number of environments to wait for; by default all that are under way.
 
         Returns:
             As :meth:`step`, a row for each of them; ``info["env_id"]`` says which they are.
@@ -422,7 +422,7 @@ class VectorEnv(gymnasium.vector.VectorEnv):  # type: ignore[type-arg, unused-ig
         self._core.change_model(env, changes.arrays(model, present, self._blueprints[env]))
 
     def set_age(self, env: int, age: Optional[float]) -> None:
-        """Lets the MIMo of one environment grow to an age in months; it has to be reset then: see :meth:`babybench.Env.set_age`.
+        """Sets the age of one environment's MIMo, months. It then needs a reset: see :meth:`babybench.Env.set_age`.
 
         Raises:
             ValueError: An age that is not allowed, or at which the observation has another shape, as without ``touch_grows``;
@@ -506,7 +506,7 @@ def _mode(mode: Union[AutoresetMode, str]) -> AutoresetMode:
     """Returns a mode by its value.
 
     Raises:
-        ValueError: It is none of them.
+        ValueError: The mode does not exist.
     """
     try:
         return AutoresetMode(mode)

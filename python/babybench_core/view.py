@@ -43,7 +43,7 @@ def chooser(env: Env, policy: Policy) -> Callable[[Mapping[str, Any]], npt.Array
 
 
 class View:
-    """A page on which people see an environment, turn the camera, pull bodies by a spring, stop time and hurry it.
+    """A page on which users see an environment, turn the camera, pull bodies by a spring, pause time or change its speed.
 
     A program either steps the environment itself and calls :meth:`show` after each step, or lets :meth:`play` or :meth:`start` do
     both. Pictures are drawn when a browser asks for one; a view without an open page draws nothing. In a notebook a view
@@ -121,7 +121,7 @@ class View:
 
         Args:
             policy: What moves MIMo: a function of the observation, a noise (``"held"``, ``"pink"``, ...), or nothing.
-            episodes: The number of episodes; by default it goes on.
+            episodes: The number of episodes; unlimited by default.
         """
         try:
             self._play(chooser(self._inside, policy), episodes)
@@ -130,7 +130,7 @@ class View:
                 raise
 
     def start(self, policy: Policy = None) -> View:
-        """Does what :meth:`play` does in a thread of its own, until :meth:`stop`.
+        """Does the same as :meth:`play` in a separate thread, until :meth:`stop`.
 
         Meanwhile the environment belongs to the view.
         """

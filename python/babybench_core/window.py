@@ -42,13 +42,13 @@ class Window:
     """A window that shows an environment while it steps, at its own pace or as fast as it can.
 
     Attributes:
-        open: Whether nobody has closed it. A closed window shows nothing, and steps are as fast as without it.
-        paused: Whether time stands: :meth:`show` then returns only when somebody asks for a step, goes on, or closes it.
+        open: Whether the window is still open. A closed window shows nothing, and steps are as fast as without it.
+        paused: Whether time is paused: :meth:`show` then returns only when the user requests a step, continues, or closes it.
         contacts, touch, help: What is drawn over the picture.
     """
 
     def __init__(self, title: str, core: _native.Env, size: tuple[int, int], camera: Optional[str] = None) -> None:
-        """Opens a window of a size in pixels; without the name of a camera, people steer it from the start."""
+        """Opens a window of a size in pixels; without the name of a camera, users steer it from the start."""
         self._pg = _pygame()
         self._core, self._size, self._camera = core, size, camera
         self._pg.display.init()
@@ -146,12 +146,12 @@ class Window:
             self.help = not self.help
 
     def _steer(self) -> Orbit:
-        """Returns the camera that people steer, which then is the one that shows."""
+        """Returns the camera that users steer, and switches the view to it."""
         self._camera = None
         return self.orbit
 
     def _grab(self, x: int, y: int) -> None:
-        """Takes hold of the body under the pointer, if one can be moved."""
+        """Grabs the body under the pointer, if one can be moved."""
         if self._camera is not None:
             return
         camera = self.orbit.camera

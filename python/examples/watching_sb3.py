@@ -46,7 +46,7 @@ VARIATIONS = (0.03, 0.07, 0.15, 0.3)  # standard deviations, in half ranges of a
 
 
 class Body:
-    """The joints that an action moves: where they are felt, their ranges, and the limb of each."""
+    """The joints that an action moves: their places in proprioception, their ranges, and the limb of each."""
 
     def __init__(self, env: babybench.Env) -> None:
         """Looks at an environment."""

@@ -116,7 +116,7 @@ pub fn read<T: Element + Copy>(
     Ok(())
 }
 
-/// Returns an array of what NumPy can turn into real numbers without leaving something out.
+/// Returns an array of the values that NumPy can convert to real numbers without loss of elements.
 fn converted<'py, T: Element>(what: &str, values: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyArrayDyn<T>>> {
     let py = values.py();
     let numpy = py.import(intern!(py, "numpy"))?;

@@ -54,7 +54,7 @@ impl Felt {
         })
     }
 
-    /// Returns whether there are no other references to the arrays, and none was replaced.
+    /// Returns whether the arrays have no other references and none was replaced.
     fn free(&self, py: Python<'_>) -> PyResult<bool> {
         let whole = self.dict.bind(py).len() == self.arrays.bind(py).len();
         Ok(whole && references(py, &self.memory, &self.arrays, &self.dict)?.eq(&self.idle)?)

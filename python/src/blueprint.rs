@@ -19,7 +19,7 @@ use crate::model;
 /// The task of an environment that a program steps by hand: a document and a skin, without goals.
 #[derive(Clone, Debug)]
 struct ByHand {
-    /// The document and the version of MIMo in it; `None` for the one that the configuration asks for.
+    /// The document and the version of MIMo in it; `None` for the configuration's own.
     document: Option<(String, Version)>,
     touch_spacing: Vec<(String, f64)>,
 }

@@ -23,12 +23,12 @@ pub const UNINTERRUPTED: usize = 64;
 /// The contents of a Python environment.
 pub struct Inner {
     pub env: babybench::Env,
-    /// Its blueprint, which others may share as long as it lives.
+    /// Its blueprint, which other environments may share during its life.
     blueprint: Py<Blueprint>,
     pub painters: Painters,
     pub action: Vec<f32>,
     views: Option<Views>,
-    /// The second infant in the scene, and what it feels.
+    /// The second infant in the scene, and his sensations.
     second: Option<SecondInfant>,
     felt: Vec<f64>,
     /// Whether observations have no images, which are drawn on request.
@@ -42,7 +42,7 @@ pub struct Env {
 }
 
 impl Env {
-    /// Takes the environment for a while.
+    /// Locks the environment for exclusive use.
     pub fn guard(&self) -> PyResult<Guard<'_, Inner>> {
         self.inner.guard()
     }
@@ -393,7 +393,7 @@ impl Env {
         state::write(self.guard()?.open()?.env.state_mut(), name, values)
     }
 
-    /// Puts a force and a torque on a body in the place of those that act on it.
+    /// Replaces the force and the torque that act on a body.
     #[pyo3(signature = (body, force, torque, point=None))]
     fn push(&self, body: usize, force: [f64; 3], torque: [f64; 3], point: Option<[f64; 3]>) -> PyResult<()> {
         let mut guard = self.guard()?;

@@ -55,7 +55,7 @@ impl AssetSource for GivenFiles {
     }
 }
 
-/// The files beside a document that lies in a folder of the file system, but is read under another path.
+/// The files next to a document that lies in a folder of the file system but is read under another path.
 pub struct BesideDocument {
     files: GivenFiles,
     /// The folder that the document is read in.

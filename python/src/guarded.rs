@@ -26,7 +26,7 @@ impl<T> Guarded<T> {
         }
     }
 
-    /// Takes the value for a while.
+    /// Locks the value for exclusive use.
     pub fn guard(&self) -> PyResult<Guard<'_, T>> {
         let name = self.name;
         match self.inner.try_lock() {
@@ -42,7 +42,7 @@ impl<T> Guarded<T> {
         }
     }
 
-    /// Leaves the value alone for good, without dropping it.
+    /// Abandons the value without dropping it.
     pub fn forget(&mut self) {
         if let Ok(inner) = self.inner.get_mut() {
             std::mem::forget(inner.take());

@@ -42,7 +42,7 @@ impl MjcfDocument {
         made
     }
 
-    /// Returns the number of an element, which is that of the document.
+    /// Returns the number of an element in the document.
     fn number(&mut self, id: ElementId) -> usize {
         self.numbers.insert(id.index(), id);
         id.index()
@@ -97,7 +97,7 @@ impl MjcfDocument {
         self.number(self.document.world())
     }
 
-    /// Returns the section with a name; a new one where there is none.
+    /// Returns the section with a name, or creates it.
     fn section(&mut self, name: &str) -> PyResult<usize> {
         let id = self.document.section(name).map_err(wrong)?;
         Ok(self.number(id))
@@ -113,7 +113,7 @@ impl MjcfDocument {
         Ok(self.number(id))
     }
 
-    /// Removes an element, with what refers to it unless it goes alone.
+    /// Removes an element, and also the elements that refer to it unless `alone` is set.
     fn remove(&mut self, number: usize, alone: bool) -> PyResult<()> {
         let id = self.id(number)?;
         if alone {

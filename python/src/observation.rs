@@ -12,7 +12,7 @@ use pyo3::types::{PyDict, PyString};
 use crate::arrays::shaped;
 use crate::slab::AnySlab;
 
-/// Returns what a skin reports with the list of what is not zero, if that is what an entry is.
+/// Returns the values of a skin with the list of nonzero ones, if the entry is touch or pain.
 fn skin_of<'e>(env: &'e Env, entry: &ObservationEntry) -> Option<&'e SkinValues> {
     match entry.sense {
         Some(Sense::Touch) => env.senses().touch_observed(),
@@ -151,7 +151,7 @@ impl Views {
         Ok(views)
     }
 
-    /// Brings the arrays up to date.
+    /// Updates the arrays.
     pub fn update(&mut self, py: Python<'_>, env: &Env) -> PyResult<()> {
         let observed = env.observation().values();
         for view in &mut self.views {

@@ -1,4 +1,4 @@
-//! The numbers of a model that are no doubles in MuJoCo, or that the engine keeps element by element: colours, groups, materials,
+//! The numbers of a model that are not doubles in MuJoCo, or that the engine keeps element by element: colours, groups, materials,
 //! lights, equalities, keyframes.
 
 use std::collections::{BTreeMap, BTreeSet};
@@ -23,7 +23,7 @@ pub trait Cell {
     /// Appends the numbers.
     fn read(&self, out: &mut Vec<f64>);
 
-    /// Takes numbers. Returns whether they are valid.
+    /// Sets numbers. Returns whether they are valid.
     fn write(&mut self, numbers: &[f64]) -> bool;
 
     /// Returns whether a column of such cells has rows, and no single numbers.
@@ -147,7 +147,7 @@ impl Cell for SameFrame {
     }
 }
 
-/// The number that a tendon has of what it runs along: a coefficient, a divisor; others do not change.
+/// The number of an element that a tendon runs along: a coefficient or a divisor. Other elements have none that can change.
 impl Cell for Wrap {
     fn read(&self, out: &mut Vec<f64>) {
         out.push(wrap_number(self));
@@ -163,7 +163,7 @@ impl Cell for Wrap {
     }
 }
 
-/// Returns MuJoCo's parameter of what a tendon runs along.
+/// Returns MuJoCo's parameter of an element that a tendon runs along.
 pub fn wrap_number(wrap: &Wrap) -> f64 {
     let side = |side: Option<usize>| side.map_or(-1.0, |site| site as f64);
     match *wrap {
@@ -191,7 +191,7 @@ impl Cell for EqualityKind {
     }
 }
 
-/// The number of a material's texture for each of MuJoCo's ten roles, of which the second, colour, is drawn.
+/// The number of a material's texture for each of MuJoCo's ten roles. Only the second, colour, is drawn.
 struct Roles<'a>(&'a mut Option<usize>);
 
 /// Roles of textures (`mjNTEXROLE`).

@@ -66,7 +66,7 @@ impl PhysicsData {
         })
     }
 
-    /// Computes with what a program has written into the arrays of the model and of the state.
+    /// Computes with the values that a program has written into the arrays of the model and of the state.
     fn with<R: Send>(
         &self,
         py: Python<'_>,
@@ -241,7 +241,7 @@ impl PhysicsData {
         Ok(hit.map(|hit| (hit.geom, hit.distance)))
     }
 
-    /// Returns the distance of two geoms where the arrays show them, as far as it is below `most`, and the points between which it is
+    /// Returns the distance of two geoms at the positions in the arrays, if it is below `most`, and the points between which it is
     /// measured, m.
     fn distance(&self, py: Python<'_>, geoms: [usize; 2], most: f64) -> PyResult<Option<Span>> {
         let now = self.model.get().now(py)?;
@@ -312,7 +312,7 @@ impl PhysicsData {
         self.guard()?.state.sensordata[..].to_array(py)
     }
 
-    /// Takes over everything from another state of the same model.
+    /// Copies everything from another state of the same model.
     fn copy_from(&self, py: Python<'_>, other: &Self) -> PyResult<()> {
         if std::ptr::eq(self, other) {
             return Ok(());
@@ -418,7 +418,7 @@ pub struct PhysicsRenderer {
     model: Py<PhysicsModel>,
     /// The textures of the materials when the renderer was made.
     textures: Vec<Option<usize>>,
-    /// Which geoms, sites, groups of tendons and groups of skins are drawn, where these are not MuJoCo's default ones.
+    /// The geoms, sites, groups of tendons and groups of skins to draw, where these are not MuJoCo's default ones.
     shown: Option<[Vec<bool>; 4]>,
 }
 
@@ -434,7 +434,7 @@ struct Drawing {
 
 #[pymethods]
 impl PhysicsRenderer {
-    /// Draws all that MuJoCo shows by default, or the geoms, sites, groups of tendons and groups of skins for which `shown` is true.
+    /// Draws what MuJoCo shows by default, or the geoms, sites, groups of tendons and groups of skins for which `shown` is true.
     #[new]
     #[pyo3(signature = (model, shown=None))]
     fn new(py: Python<'_>, model: Py<PhysicsModel>, shown: Option<[Vec<bool>; 4]>) -> PyResult<Self> {

@@ -16,10 +16,10 @@ pub struct Marker {
 pub type Placed = (i32, [f64; 3], [f64; 3], [f64; 9], [f64; 4]);
 
 impl Marker {
-    /// Makes a marker of what a program has given.
+    /// Makes a marker from a program's values.
     ///
     /// # Errors
-    /// The shape is none that is drawn, or a number is not finite.
+    /// The shape cannot be drawn, or a number is not finite.
     pub fn new(placed: &Placed) -> PyResult<Self> {
         let (kind, size, pos, mat, rgba) = placed;
         let shapes = [

@@ -85,8 +85,8 @@ fn soft(model: &Arc<Model>) -> SoftModel {
     SoftModel::new(model.clone(), options)
 }
 
-/// Lets geoms and sites that are turned as their bodies follow these, as in MuJoCo, also where their frames are the inertial ones: a position
-/// that a program writes counts then.
+/// Makes geoms and sites that are oriented like their bodies follow these, as in MuJoCo, even if their frames are the inertial ones. A position that
+/// a program writes then takes effect.
 fn level_frames(arrays: &mut Arrays) {
     let geoms = arrays.geom_sameframe.iter_mut().zip(&arrays.geom_quat);
     let sites = arrays.site_sameframe.iter_mut().zip(&arrays.site_quat);
@@ -122,7 +122,7 @@ impl PhysicsModel {
         self.current.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Returns the model with what a program has written into its arrays.
+    /// Returns the model with the values that a program has written into its arrays.
     pub fn now(&self, py: Python<'_>) -> PyResult<Now> {
         let mut current = self.current();
         let memory = self.memory.bind(py).try_readonly()?;
@@ -179,9 +179,8 @@ impl PhysicsModel {
         })
     }
 
-    /// Returns what is drawn of the model, and the number of its look. Textures that materials of the model have now are replaced by
-    /// `textures`, if there are any: MuJoCo reads them when a renderer is made. `shown` says what is drawn in place of MuJoCo's default groups. `markers`
-    /// come behind the geoms of the model.
+    /// Returns the scenery of the model and the number of its look. `textures`, if given, replaces the current textures of the materials, because
+    /// MuJoCo reads them when a renderer is made. `shown` replaces MuJoCo's default groups. `markers` follow the geoms of the model.
     pub fn scenery(
         &self,
         py: Python<'_>,
@@ -215,7 +214,7 @@ impl PhysicsModel {
         Ok((scenery, looks))
     }
 
-    /// Returns the number of the current look, with what a program has written.
+    /// Returns the number of the current look, including what a program has written.
     pub fn look(&self, py: Python<'_>) -> PyResult<u64> {
         self.now(py)?;
         Ok(self.current().looks)
@@ -275,7 +274,7 @@ impl PhysicsModel {
         Self::made(py, model, Arc::new(assets))
     }
 
-    /// Returns a model of its own with the same numbers.
+    /// Returns a separate model with the same numbers.
     fn copy(&self, py: Python<'_>) -> PyResult<Self> {
         let now = self.now(py)?;
         Self::made(py, (*now.model).clone(), self.assets.clone())
@@ -350,7 +349,7 @@ impl PhysicsModel {
         Ok(())
     }
 
-    /// Returns MuJoCo's arrays of what the engine keeps in another form: equalities, lights, materials, tendons, keyframes, data for
+    /// Returns, as MuJoCo's arrays, what the engine keeps in another form: equalities, lights, materials, tendons, keyframes, data for
     /// programs.
     fn extras<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let m = self.current().model.clone();
@@ -403,7 +402,7 @@ fn pattern_numbers(texture: &Texture) -> Option<usize> {
     (!image).then_some(texture.width * height * texture.channels)
 }
 
-/// Returns MuJoCo's type and object of what a tendon runs along.
+/// Returns MuJoCo's type and object of the elements that a tendon runs along.
 fn wrap(wrap: &Wrap) -> (i32, i32) {
     match *wrap {
         Wrap::Joint { joint, .. } => (1, joint as i32),

@@ -1,4 +1,4 @@
-//! The options and settings of a model that are no arrays.
+//! The options and settings of a model that are not arrays.
 
 use babybench::Model;
 use babybench::model::{Flags, IntegratorType, SolverType};

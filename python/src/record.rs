@@ -108,7 +108,7 @@ fn exception(error: RecordError) -> PyErr {
     }
 }
 
-/// A folder that belongs to this process as long as the object lives.
+/// A folder that this process owns until the object is dropped.
 #[pyclass(frozen, module = "babybench_core._native")]
 pub struct Folder {
     _owner: Owner,

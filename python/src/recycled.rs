@@ -1,4 +1,4 @@
-//! Arrays that callers get as their own, whose memory serves again when they have let go of it.
+//! Arrays that callers own, whose memory is reused once they have released it.
 
 use numpy::{Element, PyArray1, PyArrayMethods, PyUntypedArrayMethods};
 use pyo3::prelude::*;

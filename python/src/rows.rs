@@ -18,7 +18,7 @@ pub struct Arrays {
     images: Py<PyDict>,
     /// Whether they are.
     lazy: bool,
-    /// The arrays of the entries, in the order of [`ObservationEntry::ALL`]; `None` for those that are not there.
+    /// The arrays of the entries, in the order of [`ObservationEntry::ALL`]; `None` for missing ones.
     entries: Vec<Option<AnySlab>>,
     /// Values of a touch sensor.
     touch_width: usize,
@@ -73,7 +73,7 @@ impl Arrays {
         self.copies(py, |entry| !(lazy && entry.image.is_some()))
     }
 
-    /// Returns the images alone.
+    /// Returns only the images.
     pub fn eyes<'py>(&mut self, py: Python<'py>, copy: bool) -> PyResult<Bound<'py, PyDict>> {
         if !copy && self.lazy {
             return Ok(self.images.bind(py).clone());

@@ -37,7 +37,7 @@ impl<T: Element> Slab<T> {
         self.array.bind(py).readwrite()
     }
 
-    /// Returns an array that Python owns, written by a function of this one; it writes all of it.
+    /// Returns an array that Python owns. `write` fills all of it from this one.
     pub fn copy<'py>(&mut self, py: Python<'py>, write: impl FnOnce(&[T], &mut [T])) -> PyResult<Bound<'py, PyAny>> {
         let array = self.array.bind(py).readonly();
         let values = array.as_slice()?;

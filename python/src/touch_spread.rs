@@ -1,4 +1,4 @@
-//! MIMo's linear spread of forces, for senses whose touch function is a program's own.
+//! MIMo's linear spread of forces, for senses with a program's own touch function.
 
 use numpy::{PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2, PyReadwriteArray2};
 use pyo3::exceptions::{PyIndexError, PyValueError};

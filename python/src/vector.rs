@@ -38,11 +38,11 @@ struct Inner {
     touch_width: usize,
     /// Whether observations have no images, which are drawn on request.
     lazy: bool,
-    /// The spaces of what observations have.
+    /// The spaces of the entries of observations.
     spaces: Vec<ObservationSpace>,
     /// Rows of all environments, for steps.
     all: Arrays,
-    /// Rows of those that were received last.
+    /// Rows of the environments that were received last.
     some: Option<Arrays>,
     /// Whether the last rows are those of a receive.
     received: bool,
@@ -121,7 +121,7 @@ impl VectorEnv {
         })
     }
 
-    /// Refuses more environments than fit, before there are lists of as many.
+    /// Refuses more environments than fit into memory, before any list of that length is made.
     #[staticmethod]
     fn check_memory(
         py: Python<'_>,

@@ -1,4 +1,4 @@
-//! The viewer in a browser, behind which a Python program keeps its environment alive.
+//! The viewer in a browser of an environment that a Python program steps.
 
 use babybench_cli::view::{Next, View as Inside};
 use pyo3::exceptions::PyOSError;

@@ -50,7 +50,7 @@ def test_functions_take_the_same_arguments(module: str) -> None:
 
 
 def same(wanted: list[str], function: Any) -> bool:
-    """Tells whether a function takes the parameters, in their order, and further ones only with a default."""
+    """Returns whether a function takes the parameters, in their order, and further ones only with a default."""
     own = list(inspect.signature(function).parameters.values())
     names = [
         parameter.name for parameter in own if parameter.kind not in (parameter.VAR_KEYWORD, parameter.VAR_POSITIONAL)

@@ -36,7 +36,7 @@ def run(checkout: Path, *arguments: str, **env: str) -> subprocess.CompletedProc
 
 
 def hooked() -> bool:
-    """Tells whether this Python knows of the package from its start, as an installed wheel sees to."""
+    """Returns whether this Python knows of the package from its start, as an installed wheel sees to."""
     code = "import sys; print('babybench_kit.swap' in sys.modules)"
     return subprocess.run([sys.executable, "-c", code], capture_output=True, text=True).stdout.strip() == "True"
 

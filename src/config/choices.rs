@@ -106,7 +106,7 @@ choices! {
 }
 
 choices! {
-    /// What the strength of motors and muscles follows over age (`strength`).
+    /// The course of the strength of motors and muscles over age (`strength`).
     StrengthModel {
         /// The volume of the part that carries them.
         #[default]
@@ -117,7 +117,7 @@ choices! {
 }
 
 choices! {
-    /// What the springs and dampers of joints follow over age (`springs`).
+    /// The course of the springs and dampers of joints over age (`springs`).
     SpringModel {
         /// Nothing: they are those of the original proportions.
         #[default]
@@ -292,7 +292,7 @@ choices! {
 }
 
 choices! {
-    /// What the vestibulo-ocular reflex does with the action of the eyes (`reflex_vor`).
+    /// The effect of the vestibulo-ocular reflex on the action of the eyes (`reflex_vor`).
     ReflexVor {
         /// The eyes ignore their action.
         #[default]

@@ -111,7 +111,7 @@ fn second_infant(config: &Config) -> Option<Conflict> {
     Some((key, value, reason.to_string()))
 }
 
-/// Returns a value that is calibrated on the body of MIMo 2 alone.
+/// Returns a value that is calibrated only for the body of MIMo 2.
 fn other_body(config: &Config) -> Option<Conflict> {
     let calibrated = ["strength", "springs", "proportions"];
     let changed = |key: &&Key| calibrated.contains(&key.name) && key.value(config) != key.default_value();

@@ -124,7 +124,7 @@ impl<T: ConfigField> ConfigField for Option<T> {
 }
 
 /// Defines [`Config`](super::Config), its groups of fields, and the table of their keys, in sections. A key is a field:
-/// `name: type = default, accepted values, "meaning";`, where ` + "..."` behind the meaning is for Rust's documentation alone.
+/// `name: type = default, accepted values, "meaning";`, where ` + "..."` after the meaning is only for Rust's documentation.
 /// A `@group` is a structure of such fields, and `@parts` a switch for each part of the body: `field as key`.
 macro_rules! config {
     ($($section:tt {

@@ -112,7 +112,7 @@ impl Config {
         table::KEYS
     }
 
-    /// Returns the configuration that a file with this behavior alone has: a task has defaults of its own.
+    /// Returns the configuration of a file that sets only this behavior. Tasks have defaults of their own.
     ///
     /// ```
     /// use babybench::config::Behavior;
@@ -138,7 +138,7 @@ impl Config {
         self.touch_active && self.touch_scale > 0.0
     }
 
-    /// Checks every value alone and against the others, as reading a file does.
+    /// Checks every value by itself and against the others, as reading a file does.
     ///
     /// # Errors
     /// Returns the first value that is not allowed.

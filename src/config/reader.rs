@@ -25,7 +25,7 @@ pub struct ConfigReader {
     pub base: Config,
     /// The folder at which the path of a scene in a text starts: by default the working directory. A file's path starts at its own folder.
     pub folder: PathBuf,
-    /// Limits, of which [`Limits::config_bytes`] applies.
+    /// Limits; only [`Limits::config_bytes`] applies.
     pub limits: Limits,
 }
 
@@ -116,7 +116,7 @@ impl ConfigReader {
     }
 }
 
-/// Returns the line and the column behind valid UTF-8. The column counts characters, as editors do, not bytes.
+/// Returns the line and the column at which valid UTF-8 ends. The column counts characters, as editors do, not bytes.
 fn end_of(good: &[u8]) -> (u32, u32) {
     let line = 1 + good.iter().filter(|byte| **byte == b'\n').count() as u32;
     let last = String::from_utf8_lossy(good);

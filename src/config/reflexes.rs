@@ -65,7 +65,7 @@ impl ReflexSet {
         self.by_age || self.contains(reflex)
     }
 
-    /// Returns whether reflexes are named beside those of the age, which has no meaning.
+    /// Returns whether reflexes are named in addition to those of the age. That combination has no meaning.
     pub(super) fn is_mixed(self) -> bool {
         self.by_age && self.named.contains(&true)
     }

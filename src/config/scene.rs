@@ -71,7 +71,7 @@ impl Scene {
         known.cloned().or_else(file)
     }
 
-    /// Lets the path of a document start at a folder instead of the working directory. Absolute paths stay; `None` if the folder's
+    /// Resolves the path of a document from a folder instead of the working directory. Absolute paths stay; `None` if the folder's
     /// name is not UTF-8.
     pub(super) fn starting_at(&self, folder: &Path) -> Option<Self> {
         match self {

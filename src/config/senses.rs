@@ -40,7 +40,7 @@ impl Config {
     /// Returns the delay of a sense, in steps of the environment: its own, or that of MIMo's age, or that of all senses.
     pub(crate) fn sense_delay(&self, own: Option<f64>, of_age: &Latency) -> usize {
         match (own, self.age) {
-            // latencies are measured in milliseconds, whatever unit the keys have
+            // latencies are measured in milliseconds, and the keys may have another unit
             (None, Some(age)) if self.delays.by_age => rounded(latency(of_age, age) / Delays::step_ms(self.frame_skip)),
             _ => self.delays.steps(own.unwrap_or(self.delays.sensory), self.frame_skip),
         }

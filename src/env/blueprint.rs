@@ -235,9 +235,9 @@ impl Blueprint {
         &*self.tables.actuation
     }
 
-    /// Computes the reward of each row of goals, like Gymnasium-Robotics' `compute_reward`, for as many rows as `out` has, with desired
-    /// goals of the program's choice. `terms` ([`Goal::terms`]) are those of the steps in which the goals were achieved. For the goals of
-    /// a step it is the reward of that step, to the bit.
+    /// Computes the reward of each row of goals, one for each entry of `out`, like Gymnasium-Robotics' `compute_reward`. The program
+    /// chooses the desired goals. `terms` ([`Goal::terms`]) are those of the steps in which the goals were achieved. For the goals of a
+    /// step it is the reward of that step, to the bit.
     ///
     /// ```
     /// use babybench::config::Behavior;

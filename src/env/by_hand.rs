@@ -46,8 +46,8 @@ impl Env {
 }
 
 impl<'a> ManualControl<'a> {
-    /// Starts an episode as [`Env::reset`] does, with the given start actions, shape (n, len), instead of random ones: each is applied
-    /// for one physics step, whatever the behavior.
+    /// Starts an episode as [`Env::reset`] does, with the given start actions, shape (n, len), instead of random ones: each is applied for
+    /// one physics step, in every behavior.
     ///
     /// ```
     /// use babybench::config::Behavior;

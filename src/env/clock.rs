@@ -1,7 +1,7 @@
 //! Clocks of senses that sample less often than the environment steps.
 
-/// The clock of a sense with a rate of its own. The sense samples at the start of an episode, and then whenever the number of samples
-/// that its rate asks for grows by one. A sample is late by less than a step, and the rate holds on average.
+/// The clock of a sense with a rate of its own. The sense samples at the start of an episode, and then whenever its rate calls for
+/// one more sample. A sample is late by less than a step, and the rate holds on average.
 #[derive(Clone, Debug)]
 pub(super) struct Clock {
     /// Samples per step, at most 1.
@@ -83,7 +83,7 @@ impl Clock {
 mod tests {
     use super::*;
 
-    /// The steps among the first hundred in which a clock of 30 samples a second samples, at 200 steps a second.
+    /// Lists the steps, among the first hundred at 200 steps a second, in which a clock of 30 samples a second samples.
     fn looks(phase: f64) -> Vec<u64> {
         let mut clock = Clock::new(30.0, 0.005);
         clock.reset(phase);

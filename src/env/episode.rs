@@ -63,7 +63,7 @@ impl Env {
     pub(super) fn begin_episode(&mut self) -> Result<(), EnvError> {
         self.episode.steps = 0;
         self.info.steps = 0;
-        // success and return are those of one episode, whatever a program accumulates
+        // success and return are those of one episode, even if a program accumulates counters
         if !self.episode.accumulate || self.info.behavior.task().is_some() {
             self.task.forget();
             clear(&*self.task, &mut self.info);

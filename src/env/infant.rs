@@ -137,8 +137,8 @@ impl Infant {
         Ok(Self { env, coupling })
     }
 
-    /// Applies an action for the time step of the world, and gives the bodies that touch him their impulses. The program steps its world
-    /// afterwards.
+    /// Applies an action for one time step of the world, and applies the impulses of contacts to the bodies that touch him. The program steps
+    /// its world afterwards.
     ///
     /// # Errors
     /// Those of [`Coupling::update`] and of the action, which change nothing. A simulation that diverged, after which
@@ -158,8 +158,8 @@ impl Infant {
         Ok(self.env.last_step())
     }
 
-    /// Gives the rest of the impulses to the bodies of the world after its step; see [`Coupling::unload`]. The next [`Infant::step`] does
-    /// it otherwise.
+    /// Applies the rest of the impulses to the bodies of the world after its step; see [`Coupling::unload`]. Otherwise the next
+    /// [`Infant::step`] applies them.
     pub fn finish(&mut self, sets: &mut WorldSets<'_>) {
         self.coupling.finish(sets);
     }
@@ -211,7 +211,7 @@ impl Infant {
         Ok(self.coupling.restore(&snapshot.coupling, &model, sets)?)
     }
 
-    /// Takes him out of the world, and returns his environment, which needs a reset.
+    /// Removes him from the world, and returns his environment, which needs a reset.
     ///
     /// # Errors
     /// Textures that cannot be read.
@@ -238,7 +238,7 @@ fn check_steps(env: &Env, sets: &WorldSets<'_>) -> Result<(), CouplingError> {
     })
 }
 
-/// Goes on with a model in which slots stand for other bodies.
+/// Continues with a model whose slots stand for other bodies.
 fn use_slots(env: &mut Env, coupling: &Coupling, model: Model) -> Result<(), EnvError> {
     // a picture still to be drawn shows the bodies as they are
     env.senses_mut().look()?;

@@ -332,7 +332,8 @@ impl Env {
         self.blueprint.actuation().action_space().sample(&mut self.rng, action);
     }
 
-    /// Draws a seed from the generator of [`Env::sample_action`], so that whatever uses it follows from the environment's seed.
+    /// Draws a seed from the generator of [`Env::sample_action`]. What a program derives from it therefore follows from the environment's
+    /// seed.
     pub(crate) fn draw_seed(&mut self) -> u64 {
         self.rng.word()
     }

@@ -100,7 +100,7 @@ impl ModelChange {
     }
 }
 
-/// Gives arrays the look of others.
+/// Copies the look of other arrays.
 fn restore_look(arrays: &mut Arrays, look: &Arrays) {
     macro_rules! copy {
         ($($field:ident)*) => {
@@ -237,8 +237,8 @@ impl ModelMut<'_> {
         env.become_painted(&env.blueprint.with_look(painted)?)
     }
 
-    /// Gives the model the numbers of the scene, but for those of `changes`, as [`Blueprint::changed_numbers`] returns them. Names that
-    /// the model does not have, and arrays of another length, are refused.
+    /// Sets the model to the numbers of the scene, except for those of `changes`, as [`Blueprint::changed_numbers`] returns them. Unknown
+    /// names and arrays of another length are refused.
     ///
     /// # Errors
     /// As [`ModelMut::change`]. Nothing is changed then.

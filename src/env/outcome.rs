@@ -5,7 +5,7 @@ use super::{BehaviorInfo, Env, Info, Outcome, Step, TaskInfo};
 use crate::config::Compat;
 
 impl Env {
-    /// Returns the results of the last step once more; after a reset a reward of 0 and no end.
+    /// Returns the results of the last step again. After a reset the reward is 0 and the episode is not over.
     ///
     /// ```
     /// use babybench::{Config, Env};

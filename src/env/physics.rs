@@ -1,9 +1,9 @@
 //! The physics of an environment: its state, the engines that advance it, and the parameters that a reset restores.
 //!
-//! Most of a [`State`] is what every step computes anew: poses, inertias, contacts, constraint rows. If hundreds of environments took turns
-//! with a whole state each, every turn would load another one into the caches, though programs rarely read it. An environment of a vector
-//! therefore keeps only what decides how the run goes on, and works in a scratch state during a step or reset. A program that reads the rest
-//! gets it computed once more, with the same bits, by the call that computed it and from what that call began with ([`LastEngineCall`]).
+//! Every step recomputes most of a [`State`]: poses, inertias, contacts, constraint rows. If hundreds of environments took turns with a
+//! whole state each, every turn would load another one into the caches, though programs rarely read it. An environment of a vector therefore
+//! keeps only its dynamic state, which determines the rest of the run, and works in a scratch state during a step or reset. If a program
+//! reads the rest, the last engine call is repeated from the same start ([`LastEngineCall`]), with the same bits.
 //!
 //! Transitions of [`StateStorage`]:
 //!
@@ -24,7 +24,7 @@ use crate::mimo::{LockReport, LockTarget, lock, lock_of, unlock};
 use crate::model::Model;
 use crate::physics::{Engine, EngineError, Params, Shared, State};
 
-/// What the last call of an engine began with, as far as the call, or a task after it, has changed it.
+/// The state with which the last engine call began, for the fields that the call or a task after it has changed.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct LastEngineCall {
     call: EngineCall,
@@ -39,7 +39,7 @@ pub(crate) struct LastEngineCall {
 /// A call of an engine.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) enum EngineCall {
-    /// There was none.
+    /// No call yet.
     #[default]
     None,
     Forward,
@@ -77,7 +77,7 @@ impl LastEngineCall {
 /// The work for which an environment of a vector gets a scratch state.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum ScratchUse {
-    /// A step, which goes on from the state.
+    /// A step, which continues from the state.
     Step,
     /// A reset, which overwrites it.
     Reset,
@@ -89,22 +89,21 @@ pub(crate) struct Physics {
     engines: Arc<Engines>,
     /// An engine of its own, on a program's request.
     own: Option<Box<dyn Engine>>,
-    /// The state: all of it in [`StateStorage::Whole`], what decides how the run goes on in [`StateStorage::Split`], nothing in
-    /// [`StateStorage::Working`].
+    /// All of the state in [`StateStorage::Whole`], its dynamic part in [`StateStorage::Split`], nothing in [`StateStorage::Working`].
     kept: Box<State>,
     storage: StateStorage,
     /// Whether episodes begin in [`StateStorage::Split`].
     shares: bool,
     last_call: LastEngineCall,
-    /// Parameters after a reset: the blueprint's, with what locks and unlocks changed.
+    /// Parameters after a reset: the blueprint's, with the changes by locks and unlocks.
     pub base: Shared<Params>,
 }
 
-/// Where the parts of a state are.
+/// The storage of a state's parts.
 enum StateStorage {
     /// The environment keeps all of it.
     Whole,
-    /// The environment keeps what decides how the run goes on. A program that reads the rest finds it here, computed again.
+    /// The environment keeps the dynamic state. The rest is recomputed into this cell when a program reads it.
     Split(OnceLock<Box<State>>),
     /// A step or reset works in this scratch state.
     Working(Box<State>),
@@ -118,7 +117,7 @@ impl std::fmt::Debug for Physics {
     }
 }
 
-/// A copy has a whole state. It shares the engines, whose memory changes no later step.
+/// A copy has a whole state. It shares the engines, whose memory does not influence later steps.
 impl Clone for Physics {
     fn clone(&self) -> Self {
         let kept = match &self.storage {
@@ -161,7 +160,7 @@ impl Physics {
         }
     }
 
-    /// Returns the state, of which only what decides how the run goes on may be there.
+    /// Returns the state. Only its dynamic part is valid in every storage.
     pub fn dynamic(&self) -> &State {
         match &self.storage {
             StateStorage::Whole | StateStorage::Split(_) => &self.kept,
@@ -204,7 +203,7 @@ impl Physics {
         }
     }
 
-    /// Lets steps and resets work in scratch states from now on. What is computed is dropped.
+    /// From now on, steps and resets work in scratch states. Drops the computed quantities.
     pub fn share(&mut self) {
         self.kept.drop_computed();
         self.storage = StateStorage::Split(OnceLock::new());
@@ -231,7 +230,7 @@ impl Physics {
         }
     }
 
-    /// Gives the scratch state back, if there is one.
+    /// Returns the scratch state to the pool, if there is one.
     pub fn end(&mut self) {
         if let StateStorage::Working(scratch) = &mut self.storage {
             scratch.swap_dynamic(&mut self.kept);
@@ -252,8 +251,8 @@ impl Physics {
         state.into()
     }
 
-    /// Returns the name of a computed quantity of the scratch state that a reader would get with other bits after the work, if there is one.
-    /// It computes all of them once more.
+    /// Recomputes all computed quantities. Returns the name of one that differs from the scratch state, if any: a reader would get other
+    /// bits after the work.
     pub fn unshareable(&self) -> Option<&'static str> {
         match &self.storage {
             StateStorage::Working(scratch) => difference(scratch, &self.computed_again()),

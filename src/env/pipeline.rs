@@ -6,7 +6,7 @@ use crate::sensors::EYES;
 use crate::sensors::transform::{Acuity, AcuityOptions, Delay, Foveation, Noise, SampleHold, Sense, Signal, Transform};
 use crate::spaces::NumpyRng;
 
-/// A transform, and whether the configuration asked for it.
+/// A transform, and whether it comes from the configuration.
 #[derive(Clone)]
 struct ConfiguredTransform {
     transform: Box<dyn Transform>,
@@ -125,7 +125,7 @@ impl Pipeline {
         self.note_changes();
     }
 
-    /// Takes over the transforms that a program added to another pipeline.
+    /// Adopts the transforms that a program added to another pipeline.
     pub fn take_added(&mut self, other: &mut Self) {
         for (own, others) in self.chains.iter_mut().zip(&mut other.chains) {
             let stages = std::mem::take(&mut others.stages);
@@ -215,7 +215,7 @@ pub(super) fn append_part(out: &mut Vec<u8>, part: &mut Vec<u8>) {
     out.append(part);
 }
 
-/// Takes a part, after its length, from the front of bytes.
+/// Splits a part, which follows its length, from the front of bytes.
 pub(super) fn take_part<'b>(bytes: &mut &'b [u8]) -> Option<&'b [u8]> {
     let (length, rest) = bytes.split_first_chunk::<8>()?;
     let length = usize::try_from(u64::from_le_bytes(*length)).ok()?;

@@ -29,7 +29,7 @@ pub(super) enum PictureStatus {
     Drawn,
     /// Not drawn yet.
     Waiting,
-    /// Not drawn before the scene moved on.
+    /// The scene moved on before the picture was drawn.
     Gone,
 }
 
@@ -187,13 +187,13 @@ impl Senses {
         self.make_room();
     }
 
-    /// Takes over the transforms that were added to other senses of the same kinds.
+    /// Adopts the transforms that were added to other senses of the same kinds.
     pub(super) fn take_added(&mut self, other: &mut Self) {
         self.pipeline.take_added(&mut other.pipeline);
         self.make_room();
     }
 
-    /// Takes over the last touch from other senses of the same body.
+    /// Adopts the last touch of other senses of the same body.
     pub(super) fn take_felt(&mut self, other: &mut Self) {
         // swapped instead of copied: the other senses are dropped next
         std::mem::swap(&mut self.touch, &mut other.touch);

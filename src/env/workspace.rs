@@ -34,7 +34,7 @@ impl Drop for Workspace<'_> {
 }
 
 impl Env {
-    /// Lets steps and resets in a [`Workspace`] share scratch states from now on, if the task allows it. It is for a new environment.
+    /// From now on, steps and resets in a [`Workspace`] share scratch states, if the task allows it. Call it for a new environment.
     pub(crate) fn share(&mut self) {
         if self.task.only_moves() {
             self.physics.share();
@@ -70,8 +70,8 @@ impl Env {
         Ok(())
     }
 
-    /// Checks, in tests and debug builds, that what a step or reset computed in a scratch state can be computed again. Steps are checked
-    /// ever less often, as it takes as long as one of physics.
+    /// Checks, in tests and debug builds, that what a step or reset computed in a scratch state can be recomputed. Steps are checked less
+    /// and less often, because a check takes as long as a physics step.
     pub(super) fn check_shared(&self) -> Result<(), EnvError> {
         let steps = self.episode.steps;
         let due = steps == 0 || steps.is_power_of_two();

@@ -38,7 +38,7 @@ pub enum PackError {
         /// The cause.
         source: LogError,
     },
-    /// A log does not match the others.
+    /// A log does not match the other logs.
     #[error("{}: {reason}", path.display())]
     Unfit {
         /// The file.

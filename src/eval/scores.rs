@@ -1,7 +1,7 @@
 //! The preliminary achievement scores of a training log, and their parts.
 //!
 //! They are computed like the kit's, except that every episode counts: the kit leaves out the first record of a log, because its logs
-//! start with an empty one. Under `compat: reference` the oldest of the last 10,001 records is left out, whatever it holds.
+//! start with an empty one. Under `compat: reference` the oldest of the last 10,001 records is left out, even if it is not empty.
 
 mod serial;
 
@@ -142,7 +142,7 @@ impl Score {
     }
 
     /// Returns the records that count: the last 10,000, without the empty record at the start of the kit's logs; under
-    /// [`Compat::Reference`] without the first record of the log, whatever it holds.
+    /// [`Compat::Reference`] without the first record of the log, even if it is not empty.
     pub fn counted(records: &[Info], compat: Compat) -> &[Info] {
         let left_out = match compat {
             Compat::Api => records.iter().take_while(|record| record.steps == 0).count(),

@@ -73,7 +73,7 @@ pub struct AviWriter<W: Write + Seek> {
     height: u32,
     quality: u8,
     frames: u32,
-    /// Where the next frame begins.
+    /// Offset of the next frame.
     end: u64,
     largest: u32,
     index: Vec<u8>,

@@ -1,4 +1,4 @@
-//! Python's pickles, as far as logs need them: numbers, text, lists, dictionaries and NumPy arrays of numbers.
+//! The part of Python's pickles that logs need: numbers, text, lists, dictionaries and NumPy arrays of numbers.
 //!
 //! Written is protocol 4, which Python 3.4 and later read; arrays become real `numpy.ndarray` of `float64` under NumPy 1
 //! and 2. [`from_bytes`] understands the few opcodes of protocols 2 to 5 that such objects need and five named
@@ -76,7 +76,7 @@ pub enum PickleError {
     Limit {
         /// The kind of item that exceeds the limit.
         what: &'static str,
-        /// How many are allowed.
+        /// The limit.
         limit: usize,
     },
 }

@@ -8,7 +8,7 @@ use crate::math::Vec3;
 /// Adds custom bodies to a scene of the library, without writing files.
 ///
 /// Additions are [MJCF](https://mujoco.readthedocs.io/en/3.3.0/XMLreference.html): elements of the world (bodies, geoms, sites, cameras, lights, frames) and whole sections (assets, defaults, contacts, equalities, actuators, sensors,
-/// keyframes). It becomes [`Config::scene_extra`], so that whatever takes a configuration takes it.
+/// keyframes). It becomes [`Config::scene_extra`], so everything that takes a configuration takes it.
 ///
 /// ```
 /// use babybench::config::Scene;

@@ -5,7 +5,7 @@ use std::path::Path;
 use super::version::{MIMO, Version};
 use crate::config::{ActuationModel, Behavior, Config, Part, Scene};
 
-/// Gives the path of the top document in the assets; includes and textures are found relative to it.
+/// Path of the top document in the assets; includes and textures are found relative to it.
 pub const DOCUMENT: &str = "babybench/scene.xml";
 
 /// The path of the top document around a custom scene, which may be called `scene.xml` itself.
@@ -22,7 +22,7 @@ pub(crate) fn document_path(config: &Config) -> &'static str {
     }
 }
 
-/// Order of the actuator groups in the document, which fixes actuator ids.
+/// Order of the actuator groups in the document, which determines actuator ids.
 const ACTUATOR_GROUPS: [Part; 8] = [
     Part::Body,
     Part::Head,

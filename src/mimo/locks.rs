@@ -40,7 +40,7 @@ impl From<Part> for LockTarget<'_> {
     }
 }
 
-/// The outcome of locking or unlocking.
+/// The result of locking or unlocking.
 #[derive(Clone, Debug, PartialEq, Eq, Default)]
 pub struct LockReport {
     /// Joints that were locked or unlocked, by id.

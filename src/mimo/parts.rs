@@ -11,7 +11,7 @@ pub const JOINT_PREFIX: &str = "robot:";
 /// The body on which all others of MIMo hang.
 pub(crate) const ROOT: &str = "hip";
 
-/// MIMo's bodies in a scene: his hip and everything below it, whatever other bodies are called.
+/// MIMo's bodies in a scene: his hip and everything below it. The names of other bodies do not matter.
 ///
 /// In a model without a hip only names can tell, and every body may be his.
 ///

@@ -57,8 +57,7 @@ pub fn build_scene(
     Ok(model)
 }
 
-/// Returns the greatest torques of MIMo at the age of a configuration, by both settings of its key `strength`, whichever it has; empty
-/// without an age.
+/// Returns the greatest torques of MIMo at the age of a configuration, by both settings of the key `strength`; empty without an age.
 ///
 /// # Errors
 /// As [`build_model`].
@@ -187,7 +186,7 @@ fn other_growth(config: &Config, version: Version) -> Result<Option<Growth>, Sce
     Ok(Growth::of(&of_other(config), version)?)
 }
 
-/// Gives the second infant of a document his age.
+/// Sets the age of a document's second infant.
 fn grow_other(draft: &mut Draft, growth: Option<&Growth>) -> Result<(), SceneError> {
     let Some(growth) = growth else { return Ok(()) };
     draft.set_prefix(SECOND_PREFIX);

@@ -2,7 +2,7 @@
 
 use std::fmt::{self, Display, Formatter};
 
-/// How sure a constant is.
+/// The certainty of a constant.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Mark {
     /// Read in the source itself.
@@ -37,8 +37,8 @@ pub struct SourcedConstant {
     pub ages: Vec<f64>,
     /// Unit of the values; 1 for ratios.
     pub unit: &'static str,
-    /// The source, or what it is calibrated on.
+    /// The source, or the data for its calibration.
     pub source: &'static str,
-    /// How sure it is.
+    /// Its certainty.
     pub mark: Mark,
 }

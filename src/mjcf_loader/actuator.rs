@@ -13,10 +13,10 @@ use super::schema::Element;
 use super::table::{Table, table};
 use super::words::{AutoBool, BIASES, DYNAMICS, GAINS, TRI};
 
-/// Parameters that an element may write, as many as MuJoCo has room for.
+/// The most parameters that an element may write: MuJoCo has room for no more.
 const PARAMETERS: usize = 10;
 
-/// Returns parameters that are 0 but for the first.
+/// Returns parameters that are 0 except for the first.
 const fn first(value: f64) -> [f64; PARAMETERS] {
     let mut all = [0.0; PARAMETERS];
     all[0] = value;
@@ -295,8 +295,8 @@ impl Actuator {
         self.decide(DynType::Filter, GainType::Fixed, BiasType::Affine);
     }
 
-    /// Fills what neither the element nor a default gives with a muscle's own values: where a parameter has that of other actuators,
-    /// nothing was given.
+    /// Fills parameters that neither the element nor a default gives with a muscle's own values. A parameter with the value of other actuators counts
+    /// as not given.
     fn muscle(&mut self, muscle: &Muscle) {
         const TIMES: [f64; 2] = [0.01, 0.04];
         const FORCES: [f64; 9] = [0.75, 1.05, -1.0, 200.0, 0.5, 1.6, 1.5, 1.3, 1.2];
@@ -323,7 +323,7 @@ impl Actuator {
     }
 }
 
-/// Fills parameters: where they are those of an actuator that nothing is given of, with `own`, and then with those that are given.
+/// Fills parameters with `own` where they have the values of an unset actuator, then with the given ones.
 fn fill(parameters: &mut [f64; PARAMETERS], own: &[f64], given: &[Option<f64>]) {
     let untouched = first(1.0);
     for (k, (own, given)) in own.iter().zip(given).enumerate() {

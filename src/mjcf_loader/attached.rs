@@ -32,7 +32,7 @@ pub(super) trait Reference: Clone {
     }
 
     /// Adds `suffix` to the names that it refers to, where that names something, as MuJoCo 3.3.0 does for a copy of the element; returns
-    /// whether it makes the copy. With an empty suffix the result tells whether all is there that the element refers to.
+    /// whether it makes the copy. With an empty suffix the result tells whether everything that the element refers to exists.
     fn readdress(&mut self, suffix: &str, known: &NameTable) -> bool {
         let mut names = self.names();
         names.retain(|(_, name)| !name.is_empty());
@@ -96,7 +96,7 @@ impl NameTable {
         self.names.entry(thing).or_default().remove(name);
     }
 
-    /// Tells whether there is something whose name is `name` with `suffix` behind.
+    /// Returns whether an element has the name `name` followed by `suffix`.
     fn has(&self, thing: ElementKind, name: &str, suffix: &str) -> bool {
         let Some(names) = self.names.get(&thing) else {
             return false;
@@ -188,8 +188,8 @@ fn along(piece: &mut TendonElements) -> Vec<(ElementKind, &mut String)> {
     }
 }
 
-/// As [`Reference::readdress`], of what a tendon runs along: pieces of which there are no copies stay. One with a geom and no side site is not
-/// copied, because MuJoCo 3.3.0 looks for a side site whose name is the suffix alone.
+/// Does the same as [`Reference::readdress`] for the path of a tendon. Pieces without copies stay. A piece with a geom and no side site is not
+/// copied, because MuJoCo 3.3.0 looks for a side site named like the suffix.
 fn thread(path: &mut [TendonElements], suffix: &str, known: &NameTable) -> bool {
     let mut copied = false;
     for piece in path {
@@ -323,7 +323,7 @@ impl Sizes {
         self.nq + self.nv + self.na + self.nu + 7 * self.nmocap
     }
 
-    /// Returns the first attribute of a keyframe whose length is another than that of the state, and both lengths.
+    /// Returns the first attribute of a keyframe whose length differs from that of the state, and both lengths.
     pub fn misfit(&self, key: &Key) -> Option<(&'static str, usize, usize)> {
         let given = [
             ("qpos", key.qpos.len(), self.nq),

@@ -36,7 +36,7 @@ pub(super) enum AttributeKind {
     Quat,
     /// Three letters that name the axes of Euler angles.
     EulerSeq,
-    /// Numbers for programs, as many as the limits allow.
+    /// Numbers for programs, up to the limits.
     User,
     /// The length of such data; -1 for that of the longest.
     UserCount,
@@ -44,13 +44,13 @@ pub(super) enum AttributeKind {
     State,
     /// Numbers of a keyframe for the poses of mocap bodies. The compiler checks their count.
     Poses,
-    /// Numbers of a mesh, as many as the limits allow.
+    /// Numbers of a mesh, up to the limits.
     Data,
-    /// Whole numbers of a mesh, as many as the limits allow.
+    /// Whole numbers of a mesh, up to the limits.
     Indices,
     /// Two whole numbers.
     Ints,
-    /// Text that nothing copies, as long as a document may be.
+    /// Text that nothing copies; its length is limited only by that of a document.
     LongText,
     /// A number of bytes, with a letter for its unit, or -1.
     Memory,
@@ -87,7 +87,7 @@ impl AttributeKind {
         visit(field);
     }
 
-    /// Tells whether values are lists of numbers. An empty list counts as not given.
+    /// Returns whether values are lists of numbers. An empty list counts as not given.
     pub const fn is_numbers(self) -> bool {
         match self {
             AttributeKind::Reals { .. }
@@ -219,12 +219,12 @@ pub(super) struct Attr {
     pub kind: AttributeKind,
     /// Meaning, for display.
     pub meaning: &'static str,
-    /// Writes the default of the attribute with this name as a document would; empty when there is none. It belongs to the table: one
-    /// for each attribute would be a function each.
+    /// Writes the default of the attribute with this name as a document would; empty if there is none. One function serves a whole
+    /// table, to avoid a function for each attribute.
     pub default: fn(&str) -> String,
     /// Whether the element must have it.
     pub required: bool,
-    /// Whether it belongs to the element alone and has no place in a default class.
+    /// Whether it belongs only to the element and has no place in a default class.
     pub own: bool,
     pub rivals: Option<Alternatives>,
 }
@@ -385,13 +385,13 @@ fn whole(attribute: &'static str, text: &str, min: i64, max: i64) -> Result<i64,
     })
 }
 
-/// Reads a whole number of a list: digits alone, as in MuJoCo.
+/// Reads a whole number of a list: only digits, as in MuJoCo.
 fn integer(attribute: &'static str, text: &str) -> Result<f64, ErrorKind> {
     let (min, max) = (i64::from(i32::MIN), i64::from(i32::MAX));
     whole(attribute, text, min, max).map(|value| value as f64)
 }
 
-/// Tells whether a text is a number of bytes as MuJoCo reads it: digits with a letter for 2^10 to 2^60 behind, or -1 for its own choice.
+/// Returns whether a text is a number of bytes as MuJoCo reads it: digits and a letter for 2^10 to 2^60, or -1 for its own choice.
 fn is_memory(text: &str) -> bool {
     let text = text.trim_ascii();
     let units = ['k', 'm', 'g', 't', 'p', 'e'];

@@ -42,7 +42,7 @@ table! {
 }
 
 table! {
-    /// Attributes of `<joint>` of a composite beside those of joints.
+    /// Attributes of a composite's `<joint>` in addition to those of joints.
     group CompositeJoint {
         check "kind", AttributeKind::Word(&["main"]), "Which joints are meant: all of the cable.";
         check "type", AttributeKind::Word(&["free", "ball", "slide", "hinge"]), "Ignored, as in MuJoCo: joints of a cable are balls.";

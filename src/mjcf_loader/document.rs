@@ -194,7 +194,7 @@ table! {
 }
 
 table! {
-    /// `<attach>` in a body: a body of another model, with all below it and all that refers to nothing else.
+    /// `<attach>` in a body: a body of another model, with everything below it and the elements that refer to nothing else.
     element Attach {
         "model" model: String = String::new(), TEXT, required, "Model of which the body is.";
         "body" body: String = String::new(), TEXT, required, "Body of that model.";
@@ -230,7 +230,7 @@ pub(super) struct TypedDocument {
     pub looks: usize,
     /// References to elements that `<attach>` did not copy.
     pub absent: Vec<MissingReference>,
-    /// How much was copied of other models, here and in those.
+    /// The number of elements copied from other models, here and within those models.
     pub copied: CopyCount,
     /// Other models, by name.
     pub models: BTreeMap<String, TypedDocument>,

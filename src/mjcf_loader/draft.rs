@@ -80,7 +80,7 @@ impl DraftActuator<'_> {
         self.servo
     }
 
-    /// Multiplies the actuator's force: the gear of a motor, gain and bias of a servo, whose gear would change its angles, too.
+    /// Multiplies the actuator's force: the gear of a motor, or gain and bias of a servo, because its gear would change its angles, too.
     pub fn strengthen(&mut self, factor: f64) {
         if self.servo {
             self.gainprm
@@ -265,7 +265,7 @@ impl Draft {
         })
     }
 
-    /// Returns the name of the texture of a material, `None` for none; `None` instead if there is no such material.
+    /// Returns the name of a material's texture, `Some(None)` if it has none; `None` if there is no such material.
     pub fn material_texture(&mut self, name: &str) -> Option<&mut Option<String>> {
         let mut materials = self.document.materials.iter_mut();
         materials

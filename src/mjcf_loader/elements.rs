@@ -354,7 +354,7 @@ static TUPLE_ELEMENT: Rule = rule("element", &[TupleElement::ATTRIBUTES], &[]);
 static TUPLE: Rule = rule("tuple", &[Tuple::ATTRIBUTES], &[&TUPLE_ELEMENT]);
 static CUSTOM: Rule = rule("custom", &[], &[&NUMERIC, &CUSTOM_TEXT, &TUPLE]);
 
-/// Plugins, which are refused by their names. Their declarations alone have no effect.
+/// Plugins, which are refused by name. A declaration without a use has no effect.
 static EXTENSION: Rule = rule("extension", &[], &[]);
 
 static KEY: Rule = rule("key", &[Key::ATTRIBUTES], &[]);

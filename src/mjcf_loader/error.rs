@@ -31,8 +31,8 @@ impl fmt::Display for Location {
     }
 }
 
-/// The fault of an element that a rule allows and no reader takes. Rules and readers are in different files: without this error an element
-/// with a rule alone would load and have no effect.
+/// An element that a rule allows but no reader takes. Rules and readers are in different files: without this error, an element with a rule
+/// but no reader would load and have no effect.
 pub(super) const UNREAD: &str =
     "the library allows this element but does not read it: please report this as a bug, and remove it until then";
 
@@ -65,7 +65,7 @@ impl LoadError {
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum ErrorKind {
-    /// A file cannot be had from the source.
+    /// A file cannot be read from the source.
     #[error(transparent)]
     Asset(#[from] AssetError),
     /// The file is neither UTF-8 nor declared as Latin-1.
@@ -131,7 +131,7 @@ pub enum ErrorKind {
     /// A required attribute is missing.
     #[error("attribute \"{0}\" is required")]
     MissingAttribute(&'static str),
-    /// More user data than `<size>` allows.
+    /// An element has more user data than `<size>` allows.
     #[error("user has {count} values, more than {attribute} in <size>")]
     UserExcess {
         /// The attribute of `<size>`.
@@ -205,7 +205,7 @@ pub enum ErrorKind {
     WrongCount {
         /// The attribute.
         attribute: &'static str,
-        /// How many there are.
+        /// The number of values found.
         found: usize,
         /// Fewest.
         min: usize,

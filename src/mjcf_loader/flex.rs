@@ -125,7 +125,7 @@ const DOFS: Keywords<FlexDofs> = words! {
 };
 
 table! {
-    /// Attributes of `<edge>` that a `<flexcomp>` has beside those of a flex.
+    /// Attributes of `<edge>` that a `<flexcomp>` has in addition to those of a flex.
     group FlexCompEdge {
         "equality" equality: bool = false, FLAG, "Whether an equality holds the lengths of the edges.";
         "solref" solref: [f64; 2] = SOLREF, some(1, 2, Any), "`solref` of that equality.";

@@ -146,7 +146,7 @@ pub(super) fn attribute(element: &str, has: impl Fn(&str) -> bool, name: &str, t
     })
 }
 
-/// Tells whether later versions have an element that 3.3.0 does not have.
+/// Returns whether later versions have an element that 3.3.0 does not have.
 pub(super) fn element(parent: &str, name: &str) -> bool {
     ELEMENTS.contains(&(parent, name))
 }
@@ -161,7 +161,7 @@ mod tests {
         load_str(&text, "m.xml", &MemoryAssets::new())
     }
 
-    /// A scene with something in its world, and more behind it.
+    /// A scene with an element in its world and one after it.
     fn scene(inside: &str, behind: &str) -> String {
         format!("<worldbody><body><joint name='j'/><geom size='.1'/></body>{inside}</worldbody>{behind}")
     }

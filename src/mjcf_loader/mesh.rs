@@ -7,7 +7,7 @@ use super::attribute::{AttributeKind, FLAG, Keywords, TEXT, int, reals, words};
 use super::table::table;
 use super::words::MAX_COUNT;
 
-/// How mass and inertia follow from a mesh.
+/// The way in which mass and inertia follow from a mesh.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum MeshInertia {
     /// Those of the convex hull.

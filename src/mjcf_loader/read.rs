@@ -87,7 +87,7 @@ struct Classes<'t> {
 
 impl<'t> Classes<'t> {
     /// Reads a `default` section and those nested in it. A class starts as a copy of its parent, so the elements of a
-    /// section come before the sections nested in it, whatever their order in the text.
+    /// section come before the sections nested in it, in whatever order the text has them.
     fn read(&mut self, section: &Element, parent: Option<&str>) -> Result<(), LoadError> {
         let name = self.declare(section, parent)?;
         section

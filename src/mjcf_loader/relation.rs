@@ -226,7 +226,7 @@ table! {
 }
 
 table! {
-    /// Attributes that only spatial tendons have, beside those of all.
+    /// Attributes that only spatial tendons have, in addition to those of all tendons.
     group TendonLooks {
         "width" width: f64 = 0.003, real(Any), "Radius that the tendon is drawn with, m, which must be positive.";
         "rgba" rgba: [f64; 4] = GREY, reals(4, Any), "Colour and opacity.";

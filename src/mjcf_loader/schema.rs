@@ -73,7 +73,7 @@ pub(super) fn check(tree: &Tree, root: usize, rule: &'static Rule) -> Result<Ele
     check_below(tree, root, rule, false)
 }
 
-/// Checks an element and all below it; `class` is true for the elements of a default class.
+/// Checks an element and everything below it; `class` is true for the elements of a default class.
 fn check_below(tree: &Tree, at: usize, rule: &'static Rule, class: bool) -> Result<Element, LoadError> {
     let mut element = check_one(tree, at, rule, class && rule.name != DEFAULT)?;
     for &child in &tree.nodes[at].children {
@@ -87,7 +87,7 @@ fn check_below(tree: &Tree, at: usize, rule: &'static Rule, class: bool) -> Resu
     Ok(element)
 }
 
-/// Tells whether an element may hold another once only.
+/// Returns whether an element may hold another once only.
 fn once(parent: &str, child: &str) -> bool {
     match parent {
         "visual" | "option" | "compiler" => true,
@@ -176,7 +176,7 @@ fn check_one(tree: &Tree, at: usize, rule: &'static Rule, class: bool) -> Result
         let Some((attr, text)) = meant(node, rule, class, name, text).map_err(|kind| tree.error(at, kind))? else {
             continue;
         };
-        // as in MuJoCo, numbers that are none are not given
+        // as in MuJoCo, an empty list of numbers counts as not given
         if attr.kind.is_numbers() && text.trim_ascii().is_empty() {
             continue;
         }

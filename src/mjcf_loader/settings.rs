@@ -85,7 +85,7 @@ pub struct LengthRange {
     pub inttotal: f64,
     /// Time at its end in which the length is measured, s.
     pub interval: f64,
-    /// How much the length may change in that time, relative to the range.
+    /// Largest change of the length in that time, relative to the range.
     pub tolrange: f64,
 }
 
@@ -100,7 +100,7 @@ table! {
         "timestep" timestep: f64 = 0.01, real(Any), "Time step of the simulation, s; 0 for that of the model.";
         "inttotal" inttotal: f64 = 10.0, real(Any), "Duration of the simulation in each direction, s.";
         "interval" interval: f64 = 2.0, real(Any), "Time at its end in which the length is measured, s.";
-        "tolrange" tolrange: f64 = 0.05, real(Any), "How much the length may change in that time, relative to the range.";
+        "tolrange" tolrange: f64 = 0.05, real(Any), "Largest change of the length in that time, relative to the range.";
     }
 }
 
@@ -267,7 +267,7 @@ table! {
 const TWO_MEMORIES: &str = "memory and njmax or nstack are two ways to say the same: give one of them";
 
 impl Size {
-    /// Reads a section; those behind it win.
+    /// Reads a section; later ones win.
     ///
     /// # Errors
     /// It sets MuJoCo's memory in two ways.
@@ -283,7 +283,7 @@ impl Size {
 }
 
 impl Compiler {
-    /// Reads a section; those behind it win. A directory of all assets stands where the section names none of its own.
+    /// Reads a section; later ones win. The directory of all assets applies where the section names none of its own.
     pub fn section(&mut self, e: &Element) {
         if let Some(dir) = e.text("assetdir") {
             dir.clone_into(&mut self.texturedir);

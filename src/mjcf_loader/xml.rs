@@ -402,7 +402,7 @@ impl FileReader<'_> {
         Ok(root)
     }
 
-    /// Returns the path of a file to include: beside the document, or else beside the file that includes it.
+    /// Returns the path of a file to include: next to the document, or else next to the file that includes it.
     fn included_path(&self, at: usize, file: &str) -> Result<String, AssetError> {
         let within = self.source.resolve(&self.dir, file);
         if within.as_ref().is_ok_and(|path| self.source.contains(path)) {

@@ -7,7 +7,7 @@ pub enum TrnType {
     Joint,
     /// A joint, with forces in the frame of the parent: the same for joints of one coordinate.
     JointInParent,
-    /// A slider-crank: two sites joined by a rod, of which the slider is the one that the actuator moves along its z axis.
+    /// A slider-crank: two sites joined by a rod. The actuator moves one of them, the slider, along its z axis.
     SliderCrank,
     /// A tendon.
     Tendon,

@@ -3,7 +3,7 @@
 use super::*;
 use crate::math::{Mat3, Quat, Vec3};
 
-/// Copies a field. It is apart from where all fields are copied, which would hold an allocation for each.
+/// Copies a field. A separate function, because inlining it into the copy of all fields would repeat the allocation for each.
 #[inline(never)]
 fn copied<T: Clone>(field: &T) -> T {
     field.clone()
@@ -285,7 +285,7 @@ arrays! {
     cam_resolution: Vec<[usize; 2]>,
     /// Vertical field of view of each camera (ncam), degrees.
     cam_fovy: Vec<f64>,
-    /// Width and height of each camera's image sensor (ncam, 2), m; zeros where the document gives the field of view alone.
+    /// Width and height of each camera's image sensor (ncam, 2), m; zeros where the document gives only the field of view.
     cam_sensorsize: Vec<[f64; 2]>,
     /// Focal lengths along x and y and principal point, x and y, of each camera (ncam, 4), m, camera frame; used where it has a sensor
     /// size.
@@ -411,7 +411,7 @@ arrays! {
     actuator_forcerange: Vec<[f64; 2]>,
     /// Group of each actuator (nu). `disableactuator` of the options switches off groups 0 to 30 by bits.
     actuator_group: Vec<i32>,
-    /// Shortest and longest length of each actuator (nu, 2), in the unit of its length; MuJoCo's muscles alone use it. As given, else
+    /// Shortest and longest length of each actuator (nu, 2), in the unit of its length; only MuJoCo's muscles use it. As given, else
     /// found by simulation where `<lengthrange>` of `<compiler>` asks for it.
     actuator_lengthrange: Vec<[f64; 2]>,
     /// How each actuator's activation follows its control (nu): MuJoCo's `mjtDyn`.

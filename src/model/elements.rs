@@ -25,7 +25,7 @@ impl JointType {
             Self::Slide | Self::Hinge => 1,
         }
     }
-    /// Returns where in `qpos` the quaternion is of a joint whose coordinates begin at `adr`, if it has one.
+    /// Returns the place in `qpos` of the quaternion of a joint whose coordinates begin at `adr`, if it has one.
     pub fn quat(self, adr: usize) -> Option<usize> {
         match self {
             Self::Free => Some(adr + 3),
@@ -225,7 +225,8 @@ impl EqualityKind {
         data
     }
 
-    /// Takes a row of MuJoCo's `eq_data`. Numbers that MuJoCo does not read either, like the anchors of sites, are not kept.
+    /// Sets the numbers from a row of MuJoCo's `eq_data`. Numbers that MuJoCo does not read either, like the anchors of sites, are
+    /// dropped.
     pub fn set_data(&mut self, data: &[f64; 11]) {
         let vector = |from: usize| [data[from], data[from + 1], data[from + 2]];
         match self {
@@ -256,7 +257,7 @@ pub enum Wrap {
         /// Length of the tendon per coordinate.
         coef: f64,
     },
-    /// A pulley: the length of the path behind it is divided by `divisor`.
+    /// A pulley: the length of the path after it is divided by `divisor`.
     Pulley {
         /// The divisor, which is positive.
         divisor: f64,

@@ -5,7 +5,7 @@
 pub struct HField {
     /// Name.
     pub name: String,
-    /// Half lengths along x and y, the height that 1 in `data` stands for, the depth of the base below 0, m.
+    /// Half lengths along x and y, the height for 1 in `data`, the depth of the base below 0, m.
     pub size: [f64; 4],
     /// Number of rows, along y.
     pub nrow: usize,

@@ -42,7 +42,8 @@ limits! {
     Limits {
         /// MJCF: bytes of XML in a document and its includes.
         document_bytes: usize = 4 * MIB,
-        /// MJCF: elements in a document, its includes and the models that it names; as many are looked at, too, where bodies of models are attached.
+        /// MJCF: elements in a document, its includes and the models that it names; the limit also applies to the elements examined when bodies of
+        /// models are attached.
         elements: usize = 100_000,
         /// MJCF: attributes of an element.
         attributes: usize = 64,

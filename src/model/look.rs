@@ -68,7 +68,7 @@ pub struct Texture {
     pub file: Option<String>,
     /// Rows and columns of squares in that image, for a cube.
     pub gridsize: [usize; 2],
-    /// The face of each square, row by row, by its place in `cube_files`; empty where nothing is said.
+    /// The face of each square, row by row, by its index in `cube_files`; empty if not given.
     pub gridlayout: Vec<Option<usize>>,
     /// Whether images are mirrored from left to right, and from top to bottom.
     pub flip: [bool; 2],

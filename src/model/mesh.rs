@@ -52,15 +52,15 @@ impl Mesh {
 /// far, it decides which is found first. Where Qhull's steps come to no hull, the order is that of the vertices.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MeshHull {
-    /// Vertex of the mesh that each corner is.
+    /// Index of each corner's vertex in the mesh.
     pub vert: Vec<u32>,
-    /// Where in `edge` the neighbours of each corner begin, and at last their number.
+    /// First entry of each corner's neighbours in `edge`, then the length of `edge`.
     pub edge_adr: Vec<u32>,
     /// Neighbours, by corner.
     pub edge: Vec<u32>,
     /// Vertices of the mesh at the corners of each triangle of the hull, counterclockwise from outside.
     pub face: Vec<[u32; 3]>,
-    /// The place of each corner in the mesh, m, and a number that fills it up to four.
+    /// Position of each corner in the mesh, m, padded to four numbers.
     point: Vec<[f32; 4]>,
 }
 
@@ -69,11 +69,11 @@ pub struct MeshHull {
 pub struct MeshPolygons {
     /// Unit normals (`mesh_polynormal`).
     pub normal: Vec<Vec3>,
-    /// Where in `vert` the corners of each polygon begin (`mesh_polyvertadr`), and at last their number.
+    /// First entry of each polygon's corners in `vert` (`mesh_polyvertadr`), then the length of `vert`.
     pub vert_adr: Vec<u32>,
     /// Vertices of the mesh at the corners, counterclockwise from outside (`mesh_polyvert`).
     pub vert: Vec<u32>,
-    /// Where in `map` the polygons of each vertex of the mesh begin (`mesh_polymapadr`), and at last their number.
+    /// First entry of the polygons of each vertex of the mesh in `map` (`mesh_polymapadr`), then the length of `map`.
     pub map_adr: Vec<u32>,
     /// Polygons, by vertex (`mesh_polymap`).
     pub map: Vec<u32>,
@@ -85,7 +85,7 @@ impl MeshPolygons {
         self.vert_adr.len().saturating_sub(1)
     }
 
-    /// Tells whether there are none.
+    /// Returns whether there are no polygons.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
@@ -169,8 +169,8 @@ impl MeshHull {
         self.point = self.vert.iter().map(point).collect();
     }
 
-    /// Takes corners with their edges and the triangles in the order in which they were found. `None` unless every edge of a
-    /// triangle is one of another in the other direction, and every corner is known.
+    /// Creates a hull from corners with their edges, and triangles in the order in which they were found. `None` unless every edge of a
+    /// triangle is also an edge of another triangle in the opposite direction, and every corner is known.
     pub fn ordered(vert: Vec<u32>, edges: &[Vec<u32>], face: Vec<[u32; 3]>) -> Option<Self> {
         let plain = Self::new(face);
         let mut corner: Vec<(u32, u32)> = vert.iter().zip(0..).map(|(&vertex, at)| (vertex, at)).collect();

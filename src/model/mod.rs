@@ -1,7 +1,7 @@
 //! The compiled model: everything about a scene that does not change while it runs.
 //!
 //! [`Arrays`] carry MuJoCo's names, ids and units (SI, radians), one entry per element in document order, so a number here
-//! can be laid beside the same number there. A [`Model`] owns complete arrays, lets them be read (`model.body_mass[b]`)
+//! can be compared with the same number there. A [`Model`] owns complete arrays, lets them be read (`model.body_mass[b]`)
 //! and never be changed; `compile` of mjcf-sim-physics makes one. It is shared in an [`std::sync::Arc`]; what changes at
 //! run time lives in the `State` of mjcf-sim-physics.
 
@@ -96,12 +96,12 @@ impl Wrap {
 }
 
 impl Arrays {
-    /// Tells whether a tendon is spatial, its length one in space.
+    /// Returns whether a tendon is spatial, its length one in space.
     pub fn tendon_is_spatial(&self, tendon: usize) -> bool {
         !matches!(self.tendon_wrap[tendon].first(), Some(Wrap::Joint { .. }))
     }
 
-    /// Tells whether a sensor reads accelerations or wrenches of bodies, which follow from the constraint forces.
+    /// Returns whether a sensor reads accelerations or wrenches of bodies, which follow from the constraint forces.
     pub fn reads_accelerations(&self) -> bool {
         use SensorType::{Accelerometer, Force, FrameAngAcc, FrameLinAcc, Torque};
         let reads = |kind: &SensorType| matches!(kind, Accelerometer | Force | Torque | FrameLinAcc | FrameAngAcc);
@@ -154,7 +154,7 @@ impl Arrays {
         self.nmocap
     }
 
-    /// Tells whether a body may move in the world: by joints, or because a program moves it or a body that it is fixed to.
+    /// Returns whether a body may move in the world: by joints, or because a program moves it or a body that it is fixed to.
     pub fn moves(&self, body: usize) -> bool {
         self.body_weldid[body] != 0 || self.body_mocapid[self.body_rootid[body]].is_some()
     }

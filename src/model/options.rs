@@ -27,7 +27,7 @@ pub enum JacobianFormat {
 }
 
 impl JacobianFormat {
-    /// Tells whether MuJoCo stores the Jacobian of a model with `nv` degrees of freedom sparsely (`mj_isSparse`).
+    /// Returns whether MuJoCo stores the Jacobian of a model with `nv` degrees of freedom sparsely (`mj_isSparse`).
     pub fn is_sparse(self, nv: usize) -> bool {
         match self {
             Self::Dense => false,
@@ -160,7 +160,7 @@ pub struct Flags {
     pub multiccd: bool,
     /// Islands of bodies found one by one; off by default. Models in which it could be seen are refused: those with conjugate gradients.
     pub island: bool,
-    /// Start anew where a simulation diverges; on by default. It changes no motion here: a simulation that diverges is an error.
+    /// Restart a simulation that diverges; on by default. It changes no motion here: a simulation that diverges is an error.
     pub autoreset: bool,
     /// Energies in every step; off by default. It changes no motion.
     pub energy: bool,

@@ -2,8 +2,7 @@
 
 use std::sync::{Mutex, PoisonError};
 
-/// The idle tools. The pool grows to as many tools as are ever used at once, however many users
-/// there are.
+/// The idle tools. The pool grows to the largest number of tools in use at once; the number of users does not matter.
 #[derive(Debug)]
 pub struct Pool<T> {
     idle: Mutex<Vec<T>>,
@@ -24,7 +23,7 @@ impl<T> Pool<T> {
         result
     }
 
-    /// Takes an idle tool, if there is one.
+    /// Removes and returns an idle tool, if there is one.
     pub fn take(&self) -> Option<T> {
         // the last one that came back: a thread that works again and again has its own, warm in the cache of its core
         self.lock().pop()

@@ -1,7 +1,6 @@
 //! Types of sensors, with the kind of their objects and the number of their values.
 
-/// Defines the types of sensors, with MuJoCo's number of each, the name of its element, and how many numbers it gives of which
-/// kind.
+/// Defines the types of sensors: MuJoCo's number, the name of the element, and the number and kind of the values.
 macro_rules! sensors {
     ($($(#[$doc:meta])* $kind:ident = $code:literal, $name:literal, $dim:literal, $data:ident;)*) => {
         /// The type of a sensor.
@@ -55,7 +54,7 @@ sensors! {
     Magnetometer = 6, "magnetometer", 3, Real;
     /// Distance to the nearest geom along the z axis of a site, m; -1 where there is none.
     RangeFinder = 7, "rangefinder", 1, Positive;
-    /// Where a camera has a site in its picture, pixels: to the right and down from the upper left corner.
+    /// Position of a site in a camera's picture, pixels: to the right and down from the upper left corner.
     CamProjection = 8, "camprojection", 2, Real;
     /// Coordinate of a hinge or slide, rad or m.
     JointPos = 9, "jointpos", 1, Real;
@@ -149,7 +148,7 @@ impl SensorType {
 pub enum DataType {
     /// Any numbers; a cutoff bounds both signs.
     Real,
-    /// Numbers of which a cutoff bounds the positive side.
+    /// Numbers whose positive side a cutoff bounds.
     Positive,
     /// A unit vector, which has no cutoff.
     Axis,

@@ -17,7 +17,7 @@ pub struct Skin {
     pub bones: Vec<SkinBone>,
     /// Colour and opacity (`skin_rgba`).
     pub rgba: [f64; 4],
-    /// How far vertices are moved along their normals, m (`skin_inflate`).
+    /// Distance by which vertices are moved along their normals, m (`skin_inflate`).
     pub inflate: f64,
     /// Visual group (`skin_group`).
     pub group: i32,
@@ -41,6 +41,6 @@ pub struct SkinBone {
 }
 
 impl Skin {
-    /// Half lengths of a skin in MuJoCo's list of what is drawn, m, whatever the skin: a texture of uniform scale is scaled by them.
+    /// Half lengths of every skin in MuJoCo's list of drawables, m. A texture of uniform scale is scaled by them.
     pub const SIZE: Vec3 = [0.1; 3];
 }

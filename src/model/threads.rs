@@ -252,7 +252,7 @@ impl<J: Job> Drop for ThreadPool<J> {
     fn drop(&mut self) {
         let mut queues = self.shared.lock();
         queues.stop = true;
-        // jobs that nobody has begun are dropped unrun: nobody will ask for them
+        // jobs that have not begun are dropped unrun: their results will never be requested
         queues.jobs.clear();
         self.shared.handed.fetch_add(1, Ordering::Relaxed);
         drop(queues);

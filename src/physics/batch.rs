@@ -23,7 +23,7 @@ pub struct BatchError {
 /// Many states of one model that are stepped together, for searches and controllers (MPPI, the cross-entropy method, tree search).
 ///
 /// One engine steps all of them, and stays in the cache of its core. `mjcf_sim::rollout_on` steps them on threads, each with its own
-/// engine. Each state gets the bits that it would get alone, whatever the number of states and of threads. After a first [`Batch::rollout`]
+/// engine. Each state gets the bits that it would get alone, for any number of states and threads. After a first [`Batch::rollout`]
 /// nothing is allocated.
 ///
 /// ```

@@ -1,18 +1,18 @@
-//! Bodies whose inertia MuJoCo takes for diagonal (`body_simple`).
+//! Bodies whose inertia MuJoCo treats as diagonal (`body_simple`).
 
 use crate::math::QUAT_ID;
 use crate::model::{Arrays, JointType, SameFrame};
 
-/// Tells whether MuJoCo gives a body its whole inverse mass, not the mean over directions: one that [stands alone](is_simple) and
-/// whose joints all slide (`body_simple` 2).
+/// Returns whether MuJoCo gives a body its whole inverse mass, not the mean over directions: a [simple](is_simple) body with slide
+/// joints only (`body_simple` 2).
 pub fn slides_alone(model: &Arrays, b: usize) -> bool {
     let joints = model.body_jntadr[b]..model.body_jntadr[b] + model.body_jntnum[b];
     is_simple(model, b) && joints.into_iter().all(|j| model.jnt_type[j] == JointType::Slide)
 }
 
-/// Tells whether MuJoCo takes the inertia of a body for diagonal (`body_simple`): a body without children, in the world or in a static
-/// body of the world, whose joints are at its origin and along axes of its frame, which is that of its inertia, and none of which
-/// follows a rotation.
+/// Returns whether MuJoCo treats the inertia of a body as diagonal (`body_simple`): a body without children, in the world or in a static
+/// body of the world. Its frame is that of its inertia, its joints are at the origin and along the axes of this frame, and none of
+/// them follows a rotation.
 pub fn is_simple(model: &Arrays, b: usize) -> bool {
     // what is smaller counts as zero in MuJoCo's compiler
     const EPS: f64 = 1e-14;
@@ -33,7 +33,7 @@ pub fn is_simple(model: &Arrays, b: usize) -> bool {
         })
 }
 
-/// Tells of each body whether it stands alone with slides as its joints, in models with flexes.
+/// Returns for each body whether it is simple with slide joints only, in models with flexes.
 pub fn alone(model: &Arrays) -> Vec<bool> {
     if model.flexes.is_empty() {
         return Vec::new();

@@ -48,7 +48,7 @@ pub fn compile(spec: Spec) -> Result<Model, LoadError> {
     length_range::complete(model, &lengthrange, &places)
 }
 
-/// Finds a body whose inertia MuJoCo takes for diagonal (`body_simple`) although two of its joints move it alike: one without
+/// Finds a body whose inertia MuJoCo treats as diagonal (`body_simple`) although two of its joints move it alike: one without
 /// children, in the world or in a static body of the world, whose joints are at its centre of mass and along its axes.
 fn redundant(arrays: &Arrays) -> Option<usize> {
     let at_centre = |j: usize| arrays.jnt_pos[j].iter().all(|v| v.abs() < 1e-6);

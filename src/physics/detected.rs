@@ -94,12 +94,11 @@ impl ContactSide {
 #[doc(alias = "mjContact")]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FlexContact {
-    /// The sides, the first of which the normal points away from. MuJoCo's `geom`, `flex`, `elem` and `vert`.
+    /// The sides. The normal points away from the first. MuJoCo's `geom`, `flex`, `elem` and `vert`.
     pub sides: [ContactSide; 2],
     /// Everything else. Its `geom` has no meaning.
     pub contact: Contact,
-    /// Number of contacts of geoms, [`State::contact`](crate::State::contact), that come before it in MuJoCo's list, in which contacts of geoms
-    /// and flexes are mixed.
+    /// Number of contacts of geoms ([`State::contact`](crate::State::contact)) before it in MuJoCo's list, which mixes contacts of geoms and flexes.
     pub after: usize,
 }
 

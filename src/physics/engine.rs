@@ -145,7 +145,8 @@ pub trait Engine: Send + Sync {
     fn forward(&mut self, state: &mut State) -> Result<(), EngineError>;
 
     /// Advances by one time step. The computed quantities stay those of the start of the step; with the integrator `RK4`
-    /// they are those of the last of its four evaluations, at the end of the step, but for `sensordata`, which is that of the start.
+    /// they are those of the last of its four evaluations, at the end of the step, except for `sensordata`, which is that of the
+    /// start.
     ///
     /// # Errors
     /// As [`Engine::forward`].
@@ -208,7 +209,7 @@ impl Stage {
 /// clock.
 pub type Probe = Box<dyn FnMut(Option<Stage>) + Send + Sync>;
 
-/// Checks the lengths of all vectors of a state, and that those that a step reads are finite.
+/// Checks that all vectors of a state have the right length, and that those that a step reads are finite.
 #[doc(alias("mj_checkPos", "mj_checkVel"))]
 pub fn check_input(m: &Model, topology: &Topology, s: &State) -> Result<(), EngineError> {
     check_shape(m, topology, s)?;
@@ -240,7 +241,7 @@ pub fn check_evaluation(model: &Model, s: &State) -> Result<(), EngineError> {
     check_output(model, s)
 }
 
-/// Reports the first contact that is not finite. Bodies may be finite all the same: one of 1e30 kg does not feel it.
+/// Reports the first contact that is not finite. Bodies may still be finite: one of 1e30 kg does not feel it.
 pub fn check_contacts(model: &Model, s: &State) -> Result<(), EngineError> {
     let finite = |c: &Contact| {
         let numbers = c.pos.iter().chain(&c.frame).chain(&c.force);
@@ -266,7 +267,7 @@ pub fn check_contacts(model: &Model, s: &State) -> Result<(), EngineError> {
     Err(EngineError::DivergedContact { step: s.step, geoms })
 }
 
-/// Checks positions and velocities alone; see [`check_output`].
+/// Checks only positions and velocities; see [`check_output`].
 pub fn check_motion(model: &Model, s: &State) -> Result<(), EngineError> {
     check_bounds(model, s, &[("qpos", &s.qpos), ("qvel", &s.qvel)])
 }

@@ -29,15 +29,15 @@ pub enum EngineError {
     /// A force is applied to a body that does not exist.
     #[error("body {body} does not exist: the model has {count} bodies, numbered from 0")]
     NoBody {
-        /// Body asked for, by id.
+        /// The requested body, by id.
         body: usize,
         /// Number of bodies.
         count: usize,
     },
-    /// A keyframe that does not exist is asked for.
+    /// The keyframe does not exist.
     #[error("keyframe {key} does not exist: the model has {count}, numbered from 0")]
     NoKeyframe {
-        /// Keyframe asked for.
+        /// The requested keyframe.
         key: usize,
         /// Number of keyframes.
         count: usize,
@@ -83,7 +83,7 @@ pub enum EngineError {
         /// The number.
         value: f64,
     },
-    /// More at once than a step may take.
+    /// A step has more of something than its limit.
     #[error("more than {limit} {what} in step {step}: place the bodies apart, or let fewer of them touch")]
     TooMany {
         /// Steps done before.

@@ -36,13 +36,13 @@ impl FreeBody {
 }
 
 impl State {
-    /// Gives a body another mass, inertia or size, from the next step on: a body that hangs on nothing, carries nothing and moves
-    /// by a free joint. A reset of the environment brings the model's own back. Pictures and touch sensors keep the size of the model.
+    /// Changes the mass, inertia or size of a body from the next step on. The body must be in the world, have a free joint and carry
+    /// no other body. A reset of the environment restores the model's values. Pictures and touch sensors keep the size of the model.
     ///
     /// Derived quantities (inverse weights, masses of subtrees) follow in closed form: with mass `m`, moments
     /// `I` and centre of mass `c` in the body, `1/m` and the mean of `1/I`, and for the translations of the joint
-    /// `1/m + sum |c x axis|^2 / (3 I)`. MuJoCo's `mj_setConst` computes the same at `qpos0`, but for the mean inertia that scales
-    /// the solver's tolerance, which stays that of the model.
+    /// `1/m + sum |c x axis|^2 / (3 I)`. MuJoCo's `mj_setConst` computes the same at `qpos0`, except for the mean inertia that
+    /// scales the solver's tolerance, which stays that of the model.
     ///
     /// ```
     /// use mjcf_sim::Simulation;

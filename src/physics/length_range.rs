@@ -1,4 +1,4 @@
-//! How far an actuator can shorten and lengthen: a simulation of each direction while a document is compiled.
+//! The range in which an actuator can shorten and lengthen, by a simulation of each direction while a document is compiled.
 
 use std::sync::Arc;
 
@@ -19,8 +19,8 @@ const ENDLESS: &str = "its length goes on changing in the simulation that looks 
 const LONG: &str = "the simulation that looks for its lengthrange has too many steps: give lengthrange, or a smaller inttotal in \
     <lengthrange> of <compiler>";
 
-/// Completes `actuator_lengthrange` as MuJoCo's `mj_setLengthRange` does: by what is given, by the limit of the joint or tendon, or by
-/// pulling and pushing at the actuator for some time, with nothing else but equalities and limits.
+/// Completes `actuator_lengthrange` as MuJoCo's `mj_setLengthRange` does: from the given range, from the limit of the joint or tendon,
+/// or by pulling and pushing at the actuator for some time, with only equalities and limits active.
 ///
 /// # Errors
 /// Lengths that do not come to rest, or do not change.
@@ -49,7 +49,7 @@ pub(super) fn complete(model: Model, settings: &LengthRange, places: &Locations)
     Ok(model.with_lengthrange(ranges))
 }
 
-/// Tells whether an actuator needs a range that it does not have.
+/// Returns whether an actuator lacks a range that it needs.
 fn is_asked(model: &Model, settings: &LengthRange, i: usize) -> bool {
     let muscle = model.actuator_gaintype[i] == GainType::Muscle || model.actuator_biastype[i] == BiasType::Muscle;
     let wanted = match settings.mode {
@@ -91,7 +91,7 @@ struct LengthRangeSimulation<'a> {
 impl<'a> LengthRangeSimulation<'a> {
     fn new(model: &Model, settings: &'a LengthRange) -> Self {
         let model = model.with_options(|opt| {
-            // whatever the document says, these are on and those are off
+            // these are on and those are off, regardless of the document
             let flags = &mut opt.flags;
             for on in [
                 &mut flags.constraint,

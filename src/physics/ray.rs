@@ -73,7 +73,7 @@ pub(super) fn nearest_geom(
 ) -> Option<RayHit> {
     let mut nearest: Option<RayHit> = None;
     for g in 0..model.ngeom() {
-        // a material decides alone, whatever the geom's own opacity
+        // only the material decides; the geom's own opacity does not count
         let opacity = match model.geom_matid[g] {
             Some(material) => model.materials[material].rgba[3],
             None => model.geom_rgba[g][3],
@@ -191,7 +191,7 @@ fn ray_hfield(fields: &[HField], (p, v): (Vec3, Vec3)) -> Option<f64> {
 /// A ray over the grid of a height field, in the frame of the field.
 struct HeightFieldRay<'a> {
     field: &'a HField,
-    /// The field and those that follow it.
+    /// The field and the remaining ones.
     fields: &'a [HField],
     p: Vec3,
     v: Vec3,
@@ -228,7 +228,7 @@ impl HeightFieldRay<'_> {
     /// Keeps the nearest triangle that the ray meets in a part of it.
     ///
     /// MuJoCo looks at all squares of the rectangle that the ray crosses; it meets none but those near it, of each row those that it is
-    /// over while it is over the row or one beside it.
+    /// over while it is over the row or an adjacent one.
     fn surface(&self, segment: [f64; 2], nearest: &mut Option<f64>) {
         let Self { field, p, v, steps, .. } = *self;
         let over_row = |r: usize| {

@@ -116,7 +116,7 @@ impl SoftEngine {
         SoftModel::new(model, options).engine()
     }
 
-    /// Tells the probe, if there is one, that a stage begins, or with `None` that the step is done.
+    /// Tells the probe, if any, that a stage begins, or with `None` that the step is done.
     #[inline]
     fn mark(&mut self, stage: Option<Stage>) {
         if let Some(p) = &mut self.probe {

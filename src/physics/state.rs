@@ -19,10 +19,10 @@ table! {
     /// Everything that changes while a scene runs, and every quantity computed from it: MuJoCo's `mjData`. Fields for the muscles of MIMo,
     /// the infant of BabyBench, are empty in other models.
     ///
-    /// The fields up to `params` decide how a run goes on, with any engine and any actuation model: a copy of them
+    /// The fields up to `params` determine the rest of a run, with any engine and any actuation model: a copy of them
     /// ([`State::copy_dynamic_from`]) continues with the same bits. A step advances `qpos` and `qvel`; all computed
     /// quantities describe the *start* of the last step, before integration, as in MuJoCo. The integrator `RK4` evaluates them four
-    /// times in a step: they are those of its last evaluation, but for `sensordata`, which describes the start there, too.
+    /// times in a step: they are those of its last evaluation, except for `sensordata`, which describes the start there, too.
     ///
     /// A state belongs to the model that its engine was made for: it keeps the poses of what never moves from its first step on, so that an
     /// engine of another model, even of the same sizes, would go on with the wrong ones.
@@ -114,8 +114,8 @@ table! {
         pub flexvert_xpos: [Vec3; model.nflexvert()] = [0.0; 3];
         /// Lengths of the edges of flexes (nflexedge), m; 0 in rigid flexes.
         pub flexedge_length: [f64; model.nflexedge()] = 0.0;
-        /// Derivatives of these lengths by the degrees of freedom that change them, one edge after another, no unit: MuJoCo's
-        /// `flexedge_J`, of which sparse entries alone are kept. None in flexes whose edges neither pull nor have damping.
+        /// Derivatives of these lengths by the degrees of freedom that change them, one edge after another, no unit: MuJoCo's `flexedge_J`,
+        /// sparse entries only. Flexes whose edges neither pull nor have damping have none.
         pub flexedge_j: [f64; topology.flexedges.len()] = 0.0;
         /// Rates of these lengths (nflexedge), m/s; 0 in flexes without derivatives.
         pub flexedge_velocity: [f64; model.nflexedge()] = 0.0;
@@ -124,10 +124,10 @@ table! {
         /// Rate of each tendon's length (ntendon), its unit per second.
         pub ten_velocity: [f64; model.ntendon()] = 0.0;
         /// Derivatives of the lengths of the tendons by the degrees of freedom that change them, one tendon after another: MuJoCo's
-        /// `ten_J`, of which sparse entries alone are kept.
+        /// `ten_J`, sparse entries only.
         pub ten_j: [f64; topology.tendons.len()] = 0.0;
-        /// Whether the length of each tendon has a derivative (ntendon), even a zero one: whether points that follow each other are on
-        /// different bodies, one of which can move.
+        /// Whether the length of each tendon has a derivative (ntendon), even a zero one. It has one if successive points are on different
+        /// bodies and one of these can move.
         pub ten_entries: [bool; model.ntendon()] = true;
         /// First point of each tendon in `wrap_xpos` (ntendon).
         pub ten_wrapadr: [usize; model.ntendon()] = 0;
@@ -213,14 +213,14 @@ fn mocap(model: &Arrays) -> impl Iterator<Item = usize> {
 }
 
 impl State {
-    /// Returns the reference configuration at rest, of which nothing is computed yet: all frames are at the origin.
+    /// Returns the reference configuration at rest. Nothing is computed yet: all frames are at the origin.
     pub fn new(model: &Arrays, topology: &Topology) -> Self {
         Self::first(model, topology)
     }
 
     /// Copies what a continuation depends on: time, positions, velocities, controls, activations, applied forces, warm
-    /// start and parameters. Everything else is computed anew by the next step. Between states of one model and one
-    /// actuation model nothing is allocated.
+    /// start and parameters. The next step recomputes everything else. Between states of one model and one actuation model nothing is
+    /// allocated.
     #[doc(alias("mj_copyData", "mj_setState"))]
     pub fn copy_dynamic_from(&mut self, other: &State) {
         self.copy_dynamic(other);
@@ -265,7 +265,7 @@ impl State {
         Ok(())
     }
 
-    /// Puts the bodies that a program moves back where the document has them.
+    /// Moves the bodies that a program moves back to their places in the document.
     pub fn rest_mocap(&mut self, model: &Arrays) {
         for (k, body) in mocap(model).enumerate() {
             self.mocap_pos[k] = model.body_pos[body];
@@ -273,7 +273,7 @@ impl State {
         }
     }
 
-    /// Takes off all forces on bodies: sets [`State::xfrc_applied`] to zero.
+    /// Removes all forces on bodies: sets [`State::xfrc_applied`] to zero.
     pub fn release_forces(&mut self) {
         self.xfrc_applied.fill([0.0; 6]);
     }

@@ -173,13 +173,13 @@ macro_rules! table {
                 $(self.$field.clone_from(&other.$field);)*
             }
 
-            /// Exchanges what decides how a run goes on, without copying a number.
+            /// Exchanges the dynamic fields, without copying a number.
             #[allow(dead_code, reason = "not every table is taken apart")]
             pub fn swap_dynamic(&mut self, other: &mut Self) {
                 $(std::mem::swap(&mut self.$field, &mut other.$field);)*
             }
 
-            /// Gives back the memory of what every step computes anew.
+            /// Frees the memory of the fields that every step recomputes.
             #[allow(dead_code, reason = "not every table is taken apart")]
             pub fn drop_computed(&mut self) {
                 $(self.$cfield = Default::default();)*
@@ -199,7 +199,7 @@ macro_rules! table {
             }
         }
 
-        /// The fields that decide how a run goes on.
+        /// The dynamic fields: they determine the rest of a run.
         impl $crate::table::Row for $name {
             fn numbers<'a>(&'a self, out: &mut Vec<&'a [f64]>) {
                 $($crate::table::Row::numbers(&self.$field, out);)*

@@ -27,7 +27,7 @@ pub struct Topology {
     chain: Vec<u32>,
     /// The last degree of freedom that moves a body, if any does.
     pub body_last_dof: Vec<Option<usize>>,
-    /// Lane of each degree of freedom: four times its tile, plus its place there. Those of a tile follow each other.
+    /// Lane of each degree of freedom: four times its tile, plus its place in the tile. The lanes of a tile are consecutive.
     pub slot: Vec<u32>,
     /// First degree of freedom of each tile, and one past the last.
     pub tile_dof: Vec<usize>,
@@ -40,13 +40,13 @@ pub struct Topology {
     body_tile_adr: Vec<usize>,
     /// Degrees of freedom that can change the length of each tendon.
     pub tendons: DofRows,
-    /// Degrees of freedom that can change the length of each edge of flexes whose edges pull.
+    /// Degrees of freedom that can change the length of each edge, in flexes whose edges pull.
     pub flexedges: DofRows,
-    /// Whether each body stands alone with slides as its joints; empty without flexes.
+    /// Whether each body is simple with slide joints only; empty without flexes.
     pub slides_alone: Vec<bool>,
     /// The paths of spatial tendons.
     pub tendon_paths: TendonPaths,
-    /// Degrees of freedom on which actuators act that have a moment of their own; none of those on joints and tendons.
+    /// Degrees of freedom on which actuators with a moment of their own act; those on joints and tendons have none.
     pub actuators: DofRows,
     /// Those actuators, by id.
     pub own_moments: Vec<usize>,
@@ -247,7 +247,7 @@ impl Topology {
         self.row_adr[dof]
     }
 
-    /// Returns where `ancestor` stands among the entries of all chains in that of `dof`, if it is there.
+    /// Returns the index of `ancestor` in the chain of `dof`, among the entries of all chains, if it is there.
     #[inline]
     pub fn chain_place(&self, ancestor: usize, dof: usize) -> Option<usize> {
         // the chain of an ancestor is a prefix, so its length tells the place

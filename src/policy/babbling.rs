@@ -17,9 +17,9 @@ use crate::env::Env;
 use crate::sensors::ProprioceptionComponent;
 use crate::spaces::NumpyRng;
 
-/// Durations of a new movement, s, one of which is drawn. A reach of MIMo's takes 0.1 to 0.4 s at his strength.
+/// Durations of a new movement, s; one is drawn. MIMo's reaches take 0.1 to 0.4 s at his strength.
 const DURATIONS: [f64; 3] = [0.1, 0.2, 0.4];
-/// Shares of the decisions that do again what promises most, vary it, and put arms of two movements together; the rest is random.
+/// Shares of the decisions that repeat the most promising movement, vary it, and combine arms of two movements; the rest is random.
 const AGAIN: f64 = 0.4;
 const VARIED: f64 = 0.2;
 const COMBINED: f64 = 0.2;
@@ -31,10 +31,10 @@ const RETIMING: f64 = 0.3;
 /// Bounds of a movement's time, s.
 const SHORTEST: f64 = 0.05;
 const LONGEST: f64 = 1.0;
-/// Weight of the last episode in what is known about how often each touch happens.
+/// Weight of the last episode in the running frequency of each touch.
 const FORGETTING: f64 = 0.05;
 
-/// A policy that learns to touch its body while it acts, from its skin and its joints alone; `babbling` on the command line.
+/// A policy that learns to touch its body while it acts, using only its skin and its joints; `babbling` on the command line.
 ///
 /// An action is held for a while, a *movement*. At its end the policy knows which parts of the body each palm has felt, and remembers
 /// that together with the posture in which the movement began. It then prefers the movement that promises most touches which
@@ -81,7 +81,7 @@ struct BabblingLearner {
     arms: Arms,
     memory: MovementMemory,
     rng: NumpyRng,
-    /// For each pair of a palm and a geom how often an episode has had it lately.
+    /// For each pair of a palm and a geom, its recent frequency in episodes.
     shares: Vec<f64>,
     /// The pairs that this episode has had.
     touched: Vec<bool>,
@@ -267,7 +267,7 @@ impl BabblingLearner {
         Movement { action, steps }
     }
 
-    /// Takes each arm's part from what promises most for its palm, the rest from the better of both.
+    /// Combines movements: each arm's part comes from the most promising one for its palm, the rest from the better of the two.
     fn combined(&self, choice: &BestMovements, best: usize) -> Movement {
         let mut movement = self.memory.movement(choice.lead().unwrap_or(best)).clone();
         for (hand, index) in choice.hands.iter().enumerate() {

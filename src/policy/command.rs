@@ -74,7 +74,7 @@ impl std::fmt::Debug for CommandPolicy {
 }
 
 impl CommandPolicy {
-    /// Starts a command: a program and its arguments, separated by spaces. Quotes keep words with spaces together, and
+    /// Starts a command: a program and its arguments, separated by spaces. Quotes keep arguments with spaces together, and
     /// `\` escapes the character after it (except on Windows, where it separates folders). There is no shell:
     /// no other character is special.
     ///
@@ -319,7 +319,7 @@ impl Drop for CommandPolicy {
     }
 }
 
-/// Kills a program that has not been waited for, and all that it started and that has not left its group.
+/// Kills a program that has not been waited for, and everything that it started in its process group.
 #[cfg(unix)]
 fn kill_group(child: &Child) {
     let group = i32::try_from(child.id()).ok().and_then(rustix::process::Pid::from_raw);

@@ -146,7 +146,7 @@ pub trait Policy: Send {
     /// The policy cannot continue.
     fn act(&mut self, env: &mut Env, action: &mut Vec<f32>) -> Result<(), PolicyError>;
 
-    /// Ends learning: from now on the policy does what it has learned, without exploring. Most policies have nothing to learn.
+    /// Ends learning: from now on the policy uses what it has learned, without exploring. Most policies do not learn.
     fn settle(&mut self) {}
 }
 

@@ -25,7 +25,8 @@ pub(super) struct ObservationMessage<'a> {
 }
 
 impl<'a> ObservationMessage<'a> {
-    /// Takes the present observation of an environment, and the action space at the start of an episode.
+    /// Creates the message with the current observation of an environment, and at the start of an episode with the
+    /// action space.
     pub fn new(env: &'a Env, moment: EvaluationStep) -> Self {
         Self {
             action_space: (moment.step == 0).then(|| env.action_space()),

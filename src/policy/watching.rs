@@ -25,7 +25,7 @@ const MOVING: f64 = 0.25;
 /// Trials with random postures while no hand has been seen; afterwards, one in this many is random.
 const RANDOM: f64 = 0.1;
 
-/// A policy that learns to look at its hands while it acts, from its eyes and its joints alone; `watching` on the command line.
+/// A policy that learns to look at its hands while it acts, using only its eyes and its joints; `watching` on the command line.
 ///
 /// ```
 /// use babybench::policy::{Policy, WatchingPolicy};

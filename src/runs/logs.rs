@@ -1,5 +1,5 @@
 //! Logs of training and evaluation: `logs/training.pkl` and `logs/evaluation_N.pkl` in a run's folder, in the Python kit's format, each
-//! with the same data beside it in a common format (`.jsonl`, `.npz`).
+//! with the same data next to it in a common format (`.jsonl`, `.npz`).
 //!
 //! Every file is replaced as a whole, so a killed run leaves the last complete log.
 

@@ -159,7 +159,7 @@ impl Motion {
     /// Reads a motion: a NumPy archive (`.npz`) or a table (`.csv`).
     ///
     /// An archive has `names` (joints), `angles` (frames, joints), rad, and `rate`, Hz; if the root is known, also `root_pos` (frames,
-    /// 3), m, and `root_quat` (frames, 4), w first. A table has a line of names, the first of which is `time`, s. Each further line is a
+    /// 3), m, and `root_quat` (frames, 4), w first. A table has a line of names; the first one is `time`, s. Each further line is a
     /// frame, evenly spaced in time. The columns `root_x`, `root_y`, `root_z`, `root_qw`, `root_qx`, `root_qy` and `root_qz` are the
     /// root.
     ///

@@ -109,7 +109,7 @@ pub enum RecordError {
     },
 }
 
-/// Lists the first few numbers of episodes.
+/// Lists the numbers of the first few episodes.
 fn numbers(there: &[u64]) -> String {
     let first: Vec<String> = there.iter().take(10).map(u64::to_string).collect();
     match (there.len(), first.is_empty()) {
@@ -287,7 +287,7 @@ impl Recorder {
         self.write(env, false)
     }
 
-    /// Writes the steps so far, as [`Recorder::end`] does, of an episode that goes on or was given up: the description marks it as
+    /// Writes the steps so far of an episode that continues or was given up, as [`Recorder::end`] does. The description marks it as
     /// [`unfinished`](EpisodeDescription::unfinished).
     ///
     /// # Errors

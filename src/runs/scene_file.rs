@@ -118,7 +118,7 @@ pub fn write_scene_from(config: &Config, assets: &dyn AssetSource, save_dir: &Pa
     write_scene_file(&complete_scene_from(config, assets)?, save_dir)
 }
 
-/// Writes the scene of a blueprint, whatever its task, into the folder of its run.
+/// Writes the scene of a blueprint with any task into the folder of its run.
 pub(super) fn write_scene_of(blueprint: &Blueprint) -> Result<PathBuf, SceneFileError> {
     let config = blueprint.config();
     let scene = complete_document(&blueprint.task().document(config).xml, config, blueprint.assets())?;
@@ -158,7 +158,7 @@ pub enum SceneFileStatus {
 
 /// Ensures that the folder of a run holds the scene of an environment.
 ///
-/// If there is none, it is written as training writes it. An existing one belongs to the logs beside it and is never changed.
+/// If there is none, it is written as training writes it. An existing one belongs to the logs next to it and is never changed.
 ///
 /// # Errors
 /// [`SceneFileError::Different`] for a scene in which positions and geom ids mean something else; errors of the file system.

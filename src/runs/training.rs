@@ -174,7 +174,7 @@ fn part_names(blueprint: &Blueprint) -> Option<PartNames> {
     (blueprint.config().behavior == Behavior::SelfTouch).then(|| PartNames::new(blueprint.model()))
 }
 
-/// Starts the training log in the configuration's `save_dir`, or resumes an existing one, and writes the scene beside it.
+/// Starts the training log in the configuration's `save_dir`, or resumes an existing one, and writes the scene next to it.
 pub(super) fn open_training_log(blueprint: &Blueprint, resume: bool) -> Result<TrainingLog, RunError> {
     let config = blueprint.config();
     let names = part_names(blueprint);

@@ -93,7 +93,7 @@ pub enum NoiseError {
         /// The text.
         text: String,
     },
-    /// The colour of an age, without one.
+    /// The noise of MIMo's age was requested, but no age is set.
     #[error("color_by_age is the noise of MIMo's age, and `age` is none; set `age`, or give months: color_by_age:3")]
     NoAge,
 }

@@ -133,7 +133,7 @@ macro_rules! numbers {
                 }
             }
 
-            /// Returns the first numbers, at most as many as there are.
+            /// Returns the first `len` numbers, or all of them if there are fewer.
             pub fn first(&self, len: usize) -> Values<'_> {
                 match self {
                     $(Self::$kind(values) => Values::$kind(&values[..len.min(values.len())]),)*

@@ -46,7 +46,7 @@ impl<'a> VectorStep<'a> {
 /// The ends of episodes, in the rows of the environments whose episode ended.
 #[derive(Clone, Copy, Debug)]
 pub struct EpisodeEndRows<'a> {
-    /// Which rows hold the end of an episode (rows).
+    /// Whether each row holds the end of an episode (rows).
     pub ended: &'a [bool],
     /// The last observations; every sense is an array of rows, (rows, len).
     pub observation: Observation<'a>,

@@ -8,7 +8,7 @@ use crate::env::EnvError;
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum VectorError {
-    /// The vector would have no environments.
+    /// The vector has no environments.
     #[error("a vector needs at least one environment")]
     NoEnvironments,
     /// The environments do not fit into memory; see [`VectorOptions::max_memory`](super::VectorOptions::max_memory).
@@ -47,7 +47,7 @@ pub enum VectorError {
     Grown {
         /// The environment.
         env: usize,
-        /// The space that would differ.
+        /// The space that differs.
         what: String,
         /// The space of all environments.
         expected: String,
@@ -59,7 +59,7 @@ pub enum VectorError {
     Shape {
         /// Name of the array.
         what: &'static str,
-        /// Shape needed: environments, values of each.
+        /// Expected shape: environments, values per environment.
         expected: [usize; 2],
         /// Number of values found.
         found: usize,
@@ -109,7 +109,7 @@ pub enum VectorError {
         source: Box<EnvError>,
     },
     /// An environment panicked. The others are unharmed, and the next reset rebuilds it.
-    #[error("environment {env} panicked: {message}; reset it to make it anew")]
+    #[error("environment {env} panicked: {message}; reset it to rebuild it")]
     Panicked {
         /// The environment.
         env: usize,

@@ -77,7 +77,7 @@ impl VectorEnv {
         Ok(())
     }
 
-    /// Lets one renderer draw the eyes of all.
+    /// Draws the eyes of all environments with one renderer.
     fn look_together(&mut self) -> Result<(), VectorError> {
         let (ids, slots) = (&self.ids, self.slots.iter_mut().flatten());
         let envs = slots.filter(|slot| slot.env.ready() && ids.contains(&slot.index));
@@ -85,7 +85,7 @@ impl VectorEnv {
         draw_eyes(envs.map(|slot| &mut slot.env)).map_err(of(first))
     }
 
-    /// Lets each environment draw its eyes, on the threads that step them.
+    /// Draws the eyes of each environment on the thread that steps it.
     fn look_on_threads(&mut self) -> Result<(), VectorError> {
         let slots = &mut self.slots;
         let waiting = self.ids.iter().filter_map(|&env| {

@@ -78,7 +78,7 @@ fn each(env: &Env, layout: &RowLayout, options: &VectorOptions) -> u64 {
         // skin feels in few places, so that most pages of the array from which callers copy are never written
         rows -= 4 * layout.touch().unwrap_or_default();
     }
-    // what decides how the run goes on, and where the last step began; engines and the memory of pictures are shared
+    // the dynamic state, and where the last step began; engines and the memory of pictures are shared
     let state = 4_000 + 64 * model.nv + 50 * model.nbody();
     let computed = if env.shares() {
         0

@@ -16,7 +16,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! Environments are independent: each returns the bits that it returns alone, whatever the number of threads and the batch. With the
+//! Environments are independent: each returns the bits that it returns alone, for any number of threads and any batch. With the
 //! feature `parallel`, threads step them; without it, the caller does.
 
 mod batch;
@@ -132,8 +132,8 @@ impl VectorEnv {
         Self::build(blueprints.len(), |env| &blueprints[env], options)
     }
 
-    /// Refuses as many environments of a blueprint as would not fit into memory, without making them. Whatever makes lists of that length
-    /// asks this first; [`VectorEnv::new`] and [`VectorEnv::from_blueprints`] do it themselves.
+    /// Refuses a number of environments that would not fit into memory, without making them. Call it before making lists of that length;
+    /// [`VectorEnv::new`] and [`VectorEnv::from_blueprints`] do it themselves.
     ///
     /// # Errors
     /// None or more than memory holds; errors of [`Blueprint::env`].

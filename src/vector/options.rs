@@ -28,7 +28,7 @@ pub struct VectorOptions {
     /// Memory that the environments may take, bytes. By default the memory that the system reports as available (Linux), and otherwise 64
     /// GiB (2 GiB with 32-bit addresses).
     pub max_memory: Option<u64>,
-    /// Number of copies of all observations that the caller keeps beside those of the vector; they count as memory that the
+    /// Number of copies of all observations that the caller keeps in addition to those of the vector; they count as memory that the
     /// environments take.
     pub kept_copies: usize,
 }
@@ -36,7 +36,7 @@ pub struct VectorOptions {
 /// The number of threads per core beyond which threads only take turns.
 const THREADS_PER_CORE: usize = 4;
 
-/// A notice that fewer threads were started than asked for.
+/// A notice that fewer threads were started than requested.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ClippedThreads {
     /// Number of threads requested.

@@ -160,7 +160,7 @@ pub fn run(trials: Vec<Trial>) -> ExitCode {
     conclusion.exit_code()
 }
 
-/// Ends the process with the tests' result, where the system can do that without more.
+/// Ends the process at once with the tests' result, on Unix.
 ///
 /// An ordinary end calls what libraries registered for it while threads of the software drivers for graphics still run, and about one
 /// process in ten of a loaded machine then died of a damaged heap, after its last test had passed.

@@ -19,7 +19,8 @@ export { ActionNoise, ArgumentError, Blueprint, Env, FreedError, loadFace, Missi
 /** @typedef {import("./types.js").FreeCamera} FreeCamera */
 
 /**
- * Loads the module once, before anything else is used. Without a source it loads the file `core_bg.wasm` beside this one.
+ * Loads the module once, before anything else is used. Without a source it loads the file `core_bg.wasm` next to this
+ * one.
  * @type {(source?: import("./load.js").Source) => Promise<void>}
  */
 const init = once(async (source) => {

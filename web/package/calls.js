@@ -12,7 +12,7 @@ export const PROPERTIES = /** @type {const} */ ([
 /** @typedef {typeof METHODS[number] | typeof PROPERTIES[number]} Asked */
 /** @typedef {import("./env.js").Env} Env */
 /**
- * The arguments of a call: those of a method, none for a property.
+ * The arguments of a method call; none for a property.
  * @template {Asked} K
  * @typedef {Env[K] extends (...args: infer A) => unknown ? A : []} Arguments
  */

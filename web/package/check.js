@@ -6,7 +6,7 @@ const MOST_SEED = 2n ** 64n - 1n;
 const MOST_WHOLE = 2 ** 32 - 1;
 
 /**
- * Names what was found, for messages.
+ * Describes a value, for messages.
  * @param {unknown} value
  */
 export function shown(value) {
@@ -104,7 +104,7 @@ export function files(name, value) {
 }
 
 /**
- * Whether something is an array, or a typed one of numbers.
+ * Whether something is an array or a typed array.
  * @param {unknown} value
  * @returns {value is ArrayLike<number>}
  */
@@ -130,7 +130,7 @@ export function numbers(name, value, length) {
  */
 function emptied(value) {
   if (!ArrayBuffer.isView(value) || value.buffer.byteLength > 0) return "";
-  return "; it is a view from before the module's memory grew, read it anew";
+  return "; it is a view from before the module's memory grew, read it again";
 }
 
 /**

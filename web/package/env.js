@@ -13,7 +13,7 @@ const KINDS = /** @type {const} */ ({ 1: Uint8Array, 4: Float32Array, 5: Int32Ar
 
 /**
  * An environment. Numbers are views on the module's memory, without copies: they change with the next step, and a view that
- * you keep has length 0 once that memory has grown, for example by a reset, a first picture or another environment. Read them anew from
+ * you keep has length 0 once that memory has grown, for example by a reset, a first picture or another environment. Read them again from
  * {@link Env.observation}, {@link Env.action} or {@link Env.view}, or copy them with `slice()`.
  *
  * ```js
@@ -112,7 +112,7 @@ export class Env {
   }
 
   /**
-   * Steps with an action; without one, with what is written in {@link Env.action}.
+   * Steps with an action; without one, with the contents of {@link Env.action}.
    * @param {ArrayLike<number>} [action]
    * @returns {import("./types.js").Step}
    */
@@ -142,7 +142,7 @@ export class Env {
   }
 
   /**
-   * Computes what rows of goals would have earned; for the goals of a step it is the reward of the step.
+   * Computes the rewards of rows of goals; for the goals of a step it is the reward of the step.
    * @param {ArrayLike<number>[]} achieved
    * @param {ArrayLike<number>[]} desired
    * @param {{ reward_terms: number[] | null }[]} infos those of the steps
@@ -220,7 +220,7 @@ export class Env {
   }
 
   /**
-   * Updates what is drawn to the start of the last physics step.
+   * Updates the drawn scene to the start of the last physics step.
    * @returns {import("./types.js").Frame}
    */
   update() {

@@ -5,7 +5,7 @@ export class ModuleError extends Error {
   /** @param {unknown} cause */
   constructor(cause) {
     super(
-      "the simulation stopped: it ran out of memory, or met a fault; load the page or the module anew, with fewer or " +
+      "the simulation stopped: it ran out of memory, or met a fault; reload the page or the module, with fewer or " +
         "smaller pictures, a larger touch_scale or fewer environments",
       { cause },
     );

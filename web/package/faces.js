@@ -1,4 +1,4 @@
-// Faces that the module does not hold: their pictures lie beside it.
+// Faces that the module does not hold: their pictures are separate files.
 import { refuse } from "./check.js";
 import { bringFace, configKeys } from "./core.js";
 import { MissingError } from "./errors.js";
@@ -12,7 +12,7 @@ const brought = new Set(["default"]);
  * Fetches the picture of a face, 20 kB, so that `facial_expression` and {@link Env.swapFacialExpression} can show it. The face that MIMo
  * makes by default is always there.
  * @param {string} name such as `happy`
- * @param {string | URL | Request | Response | BufferSource} [source] by default the file `faces/face_NAME.png` beside this one
+ * @param {string | URL | Request | Response | BufferSource} [source] by default the file `faces/face_NAME.png` next to this one
  */
 export async function loadFace(name, source) {
   checkFace("name", name);
@@ -37,7 +37,7 @@ async function bytesOf(found) {
 }
 
 /**
- * Refuses what is not one of the faces that the configuration names.
+ * Refuses faces that the configuration does not have.
  * @param {string} argument
  * @param {unknown} value
  */

@@ -4,7 +4,7 @@ import { refuse } from "./check.js";
 /** @typedef {string | URL | Request | Response | BufferSource | WebAssembly.Module} Source */
 
 /**
- * Finds the bytes of a module: the caller's, or the file beside this one.
+ * Finds the bytes of a module: the caller's, or the file next to this one.
  * @param {Source | undefined} source
  * @param {URL} beside where the file is, unless the caller says otherwise
  * @returns {Promise<Request | Response | URL | BufferSource | WebAssembly.Module>}
@@ -39,7 +39,7 @@ export function once(start) {
 
 /**
  * @param {unknown} source
- * @param {Function[]} more classes that it may be of, beside those of a file
+ * @param {Function[]} more classes that it may have, besides those of a file
  * @param {string} expected
  */
 export function checkSource(source, more, expected) {

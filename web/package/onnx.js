@@ -35,7 +35,7 @@ export default init;
 export class OnnxPolicy {
   /** @type {Model | undefined} */
   #model;
-  /** Properties of what is observed. */
+  /** Properties of the observation. */
   #names;
 
   /**

@@ -71,7 +71,7 @@
  * @property {boolean | null} is_success whether a task's goal is reached
  * @property {boolean | null} is_failure whether it is out of reach
  * @property {number | null} return sum of a task's rewards in this episode
- * @property {number[] | null} reward_terms what its reward depends on beside goals
+ * @property {number[] | null} reward_terms the values besides goals that its reward depends on
  * @property {Record<string, number> | null} measures what a task measures besides, by name; empty for most
  */
 
@@ -95,7 +95,7 @@
  */
 
 /**
- * What is drawn of a moment; views on the module's memory.
+ * The drawn data of a moment; views on the module's memory.
  * @typedef {object} Frame
  * @property {Float32Array} poses 12 for each drawable: position, m, and rotation matrix, row by row, its columns as long as the thing has grown since it was compiled
  * @property {Float32Array} bodies 7 for each body: position, m, and quaternion, w first
@@ -149,7 +149,7 @@
  */
 
 /**
- * How the scene looks.
+ * The look of the scene.
  * @typedef {object} Look
  * @property {Drawable[]} drawables
  * @property {{ width: number, height: number }[][]} textures one image, or the six sides of a cube
@@ -161,7 +161,7 @@
  */
 
 /**
- * What locking changed, by names of joints.
+ * The changes by a lock, by names of joints.
  * @typedef {object} LockReport
  * @property {string[]} changed
  * @property {string[]} held by another constraint of the scene

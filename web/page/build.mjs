@@ -14,7 +14,7 @@ const out = process.argv[2];
 if (!out) throw new Error("Say where the page goes: node build.mjs OUT_DIR");
 mkdirSync(out, { recursive: true });
 
-/** The package is beside the page and not bundled with it, because it loads its module from its own folder. */
+/** The package is a separate file, not bundled with the page, because it loads its module from its own folder. */
 const packageBeside = {
   name: "package beside the page",
   setup(b) {

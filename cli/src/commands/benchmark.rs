@@ -21,7 +21,7 @@ pub struct BenchmarkArgs {
     /// The plan: a YAML file with configs, policies, and perhaps ages, seeds, steps; see docs/benchmark.yml
     #[arg(value_name = "FILE")]
     plan: PathBuf,
-    /// Folder for benchmark.md, .html and .json, runs and records. What is there already is not run again
+    /// Folder for benchmark.md, .html and .json, runs and records. Existing results are not run again
     #[arg(long, value_name = "DIR", default_value = "results/benchmark")]
     out: PathBuf,
     /// Number of runs at a time; one for each core by default. Results do not depend on it

@@ -82,7 +82,7 @@ const GEARS: [(&str, Option<Version>, Row); 8] = [
     ),
 ];
 
-/// Writes stature, mass, centre of mass and strength of the MIMo of an environment beside those of the authors' formulas.
+/// Writes stature, mass, centre of mass and strength of an environment's MIMo next to those of the authors' formulas.
 pub fn write(out: &mut impl Write, env: &Env, age: f64) -> io::Result<()> {
     let (model, config) = (env.model(), env.config());
     let Some(figures) = BodyFigures::of(model) else {

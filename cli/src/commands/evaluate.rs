@@ -146,7 +146,7 @@ impl Evaluate {
         Ok(())
     }
 
-    /// Writes the scene beside the logs, or checks the one that is there.
+    /// Writes the scene next to the logs, or checks the existing one.
     fn keep_scene(&self, blueprint: &Blueprint) -> Result<(), Box<dyn Error>> {
         let dir = &blueprint.config().save_dir;
         match keep_scene(blueprint)? {

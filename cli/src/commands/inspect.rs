@@ -217,7 +217,7 @@ fn write_actuators(out: &mut impl Write, env: &Env) -> io::Result<()> {
     Ok(())
 }
 
-/// Returns the name of what an actuator acts on that is not a joint.
+/// Returns the name of the element that an actuator acts on, if it is not a joint.
 fn target(model: &Model, actuator: usize) -> &String {
     let id = model.actuator_trnid[actuator];
     match model.actuator_trntype[actuator] {

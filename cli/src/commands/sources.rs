@@ -1,4 +1,4 @@
-//! How much of an infant MIMo is: strength, proportions and noise over age by both settings, and the constants behind them.
+//! MIMo's likeness to an infant: strength, proportions and noise over age by both settings, and the constants behind them.
 
 use std::error::Error;
 use std::io::{self, Write};

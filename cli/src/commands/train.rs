@@ -119,7 +119,7 @@ impl Train {
         }
         let (path, name) = (path.display(), self.policy.as_deref().unwrap_or_default());
         Err(format!(
-            "--resume goes on from {path}, but what the policy {name} had learned by its end is kept nowhere: train without --resume, in \
+            "--resume continues from {path}, but what the policy {name} had learned by its end was not saved: train without --resume, in \
              a save_dir of its own if the log is to stay"
         ))
     }
@@ -140,7 +140,7 @@ impl Train {
             let n = usize::try_from(self.train_for - steps).map_or(envs.len(), |rest| rest.min(envs.len()));
             actions.truncate(n * envs.single_action_space().len());
             for failure in envs.step(&actions)?.failures {
-                bar.suspend(|| note!("warning: environment {} starts anew: {}", failure.env, failure.error));
+                bar.suspend(|| note!("warning: environment {} restarts: {}", failure.env, failure.error));
             }
             steps += n as u64;
             bar.set_position(steps);

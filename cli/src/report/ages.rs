@@ -24,8 +24,8 @@ const LEFT: usize = 74;
 const STYLE: &str =
     "text{font:14px system-ui,sans-serif;fill:#80786e}.age{font-size:19px;fill:#34302c}.rule{font-size:12px}";
 
-/// Draws the MIMo of each model, which is of the age beside it in months, one beside the other with his stature and mass, as an SVG
-/// document; `None` if a model has no MIMo.
+/// Draws the MIMos of several models side by side, each with his age in months, stature and mass, as an SVG document; `None` if a model has
+/// no MIMo.
 pub fn draw_ages(infants: &[(f64, &Model)], assets: &dyn AssetSource) -> Option<String> {
     let figures: Option<Vec<_>> = infants.iter().map(|(_, model)| BodyFigures::of(model)).collect();
     let figures = figures?;

@@ -90,7 +90,7 @@ fn seen_alone(record: &Info) -> f64 {
     100.0 * Score::of_episode(record, record.steps).unwrap_or(0.0)
 }
 
-/// Charts the different parts touched so far by each hand, and in each episode alone by both.
+/// Charts the number of different parts touched so far by each hand, and by both hands in each single episode.
 fn touches(records: &[Info], reachable: usize) -> CurveChart {
     let so_far = |hand: usize| {
         let mut seen: Vec<usize> = Vec::new();
@@ -154,7 +154,7 @@ fn return_alone(record: &Info) -> f64 {
     record.behavior.task().map_or(0.0, |info| info.episode_return)
 }
 
-/// Charts the return of each episode, and the share of successes, 100 % of which is the upper end of the axis.
+/// Charts the return of each episode and the share of successes. The upper end of the axis is 100 % of successes.
 fn returns(records: &[Info]) -> CurveChart {
     let dots: Vec<f64> = records.iter().map(return_alone).collect();
     let success = |r: &Info| r.behavior.task().is_some_and(|info| info.outcome.is_success);

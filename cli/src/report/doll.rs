@@ -80,7 +80,7 @@ impl Doll {
         Some(doll)
     }
 
-    /// Takes MIMo out of a scene as he is, with his soles at the lower edge of a picture of `size` (width and height,
+    /// Extracts MIMo from a scene in his current pose, with his soles at the lower edge of a picture of `size` (width and height,
     /// pixels) that is `span` m high.
     pub fn dressed(model: &Model, assets: &dyn AssetSource, size: [usize; 2], span: f64) -> Option<Self> {
         let mut doll = Self::posed(model, assets, size, ARMS[1])?;

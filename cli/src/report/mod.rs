@@ -31,7 +31,7 @@ fn months(age: f64) -> String {
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum ReportError {
-    /// The folder is not there.
+    /// The folder does not exist.
     #[error("{}: {}; give the save_dir of a run (babybench train makes one)", path.display(), missing(path))]
     Missing {
         /// The folder.
@@ -51,7 +51,7 @@ pub enum ReportError {
     Unreadable {
         /// The folder.
         path: PathBuf,
-        /// Description of the fault of each.
+        /// The fault of each log.
         reasons: String,
     },
     /// The baseline run cannot be used.
@@ -91,8 +91,8 @@ pub struct Report {
 }
 
 impl Report {
-    /// Builds the report of the folder of a run, ours or the Python kit's. What is not there yet (training,
-    /// evaluation, video) is left out, with a notice.
+    /// Builds the report of the folder of a run, ours or the Python kit's. Parts that do not exist yet (training,
+    /// evaluation, video) are left out, with a notice.
     ///
     /// # Errors
     /// A folder that is missing or is not that of a run; no readable logs.

@@ -132,7 +132,7 @@ impl RunContents {
         Ok(())
     }
 
-    /// Returns what the run follows where the API page and the Python code disagree.
+    /// Returns whether the run follows the API page or the Python code where they disagree.
     pub fn compat(&self) -> Compat {
         self.config.as_ref().map_or(Compat::Api, |config| config.compat)
     }

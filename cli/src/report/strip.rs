@@ -102,8 +102,8 @@ fn looks(info: &[Info]) -> Vec<EpisodeMoment> {
     out
 }
 
-/// Reads frames of a Motion-JPEG video in an `.avi` file by number; those that are not there are left out. The file
-/// may still grow or have been cut off.
+/// Reads frames of a Motion-JPEG video in an `.avi` file by number. Missing ones are left out: the file may be cut off or still be
+/// growing.
 ///
 /// # Errors
 /// The file cannot be read, is not an `.avi` file or has another encoding.

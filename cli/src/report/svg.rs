@@ -1,4 +1,4 @@
-//! Charts as files of their own.
+//! Charts as separate files.
 
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;

@@ -1,4 +1,4 @@
-//! A viewer of environments that live: a page on this machine, and the environment behind it, which people turn, pull, stop and hurry.
+//! A viewer of a running environment: a page on this machine from which users turn the view, pull bodies, pause and change the speed.
 //!
 //! The page is small. When a browser asks for a picture, it also sends the visitor's actions, and the environment's own renderer draws
 //! the picture here. Without requests nothing is drawn. The server listens on the loopback interface only, at an address that cannot be

@@ -17,7 +17,7 @@ let turned = [0, 0];
 let moved = [0, 0];
 let zoomed = 1;
 let dragged = null;
-/** What the program last said. */
+/** The program's last answer. */
 let said = null;
 let scale = 1;
 
@@ -48,7 +48,7 @@ async function ask() {
   picture.close();
 }
 
-/** Asks for one picture after the other: less often while nothing moves, and not while the page is hidden. */
+/** Requests one picture after another: less often while nothing moves, and not while the page is hidden. */
 async function live() {
   for (;;) {
     await new Promise(requestAnimationFrame);

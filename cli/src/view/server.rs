@@ -85,7 +85,7 @@ impl Server {
         format!("http://{}{}", self.address, self.path)
     }
 
-    /// Waits for a question, at most so long.
+    /// Waits for a question, up to a time limit.
     pub fn ask(&self, wait: Duration) -> Option<Ask> {
         match self.asks.recv_timeout(wait) {
             Ok(ask) => Some(ask),
@@ -110,7 +110,7 @@ impl Drop for Server {
     }
 }
 
-/// Takes connections until the server is closed.
+/// Accepts connections until the server is closed.
 fn accept(listener: &TcpListener, shared: &Arc<Shared>, closed: &AtomicBool) {
     for stream in listener.incoming() {
         if closed.load(Ordering::Relaxed) {
@@ -135,7 +135,7 @@ fn accept(listener: &TcpListener, shared: &Arc<Shared>, closed: &AtomicBool) {
     }
 }
 
-/// A request, as far as it matters.
+/// The parts of a request that the server uses.
 #[derive(Debug, Default, PartialEq)]
 struct Request {
     method: String,

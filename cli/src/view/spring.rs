@@ -32,7 +32,7 @@ impl Held {
 }
 
 impl Spring {
-    /// Takes hold of a body at a place of the world, m, if anything moves it. Returns whether it does.
+    /// Grabs a body at a point of the world, m, if the body can move. Returns whether it did.
     pub fn hold(&mut self, env: &Env, body: usize, place: Vec3) -> bool {
         let (model, state) = (env.model(), env.state());
         let moves = model.body_weldid.get(body).is_some_and(|&root| root != 0);
@@ -55,7 +55,7 @@ impl Spring {
         }
     }
 
-    /// Lets go, and takes the force off.
+    /// Releases the body and removes the force.
     pub fn let_go(&mut self, env: &mut Env) {
         if self.held.take().is_some() {
             env.state_mut().release_forces();

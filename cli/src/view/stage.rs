@@ -26,7 +26,7 @@ pub struct Stage {
     /// Whether time is paused, and whether it pauses after one more step.
     pub paused: bool,
     pub single: bool,
-    /// Simulated seconds in one.
+    /// Simulated seconds per second of real time.
     pub speed: f64,
     pub moves: bool,
     /// Whether a new episode was requested.
@@ -34,12 +34,12 @@ pub struct Stage {
     pub spring: Spring,
     touch: bool,
     contacts: bool,
-    /// A camera of the scene, by name; people steer otherwise.
+    /// A camera of the scene, by name; without one, users steer the view.
     camera: Option<String>,
     orbit: Option<Orbit>,
     renderer: Option<Renderer>,
     size: [usize; 2],
-    /// Distance of what is held from the camera's plane, m.
+    /// Distance of the held point from the camera's plane, m.
     depth: f64,
     rgb: Vec<u8>,
     depths: Vec<f32>,
@@ -118,7 +118,7 @@ impl Stage {
         Ok(())
     }
 
-    /// Returns the camera that people steer, which then is the one that shows.
+    /// Returns the camera that users steer, and switches the view to it.
     fn steer(&mut self, env: &Env) -> &mut Orbit {
         self.camera = None;
         self.orbit.get_or_insert_with(|| Orbit::new(env))
@@ -142,7 +142,7 @@ impl Stage {
         Ok(orbit.lens(fovy, width as f64 / height as f64)?)
     }
 
-    /// Takes hold of the body at a place of the picture, if there is one that moves.
+    /// Grabs the body at a place of the picture, if there is one that can move.
     fn hold(&mut self, env: &Env, place: [f64; 2]) -> Result<(), EnvError> {
         let [width, height] = self.size;
         let (mut geoms, mut depths) = (vec![-1; width * height], vec![0.0; width * height]);

@@ -1,5 +1,5 @@
-//! CortenForge, another engine in pure Rust that reads MJCF, and babybench beside MuJoCo 3.3.0: which documents they load, and how near their
-//! accelerations are.
+//! Compares CortenForge, another engine in pure Rust that reads MJCF, and babybench with MuJoCo 3.3.0: the documents that each loads, and the errors
+//! of their accelerations.
 //!
 //! Usage: `conformance-peer FOLDER...`. Prints a table in Markdown. Of a document that both engines and MuJoCo load, eight states are compared, of a run of
 //! MuJoCo under random controls: `qacc` of a forward computation, relative to the largest.
@@ -32,7 +32,7 @@ const STEPS: usize = 100;
 /// Error of accelerations up to which an engine agrees.
 const AGREES: f64 = 1e-6;
 
-/// A document beside MuJoCo.
+/// A document compared with MuJoCo.
 #[derive(Deserialize, Serialize)]
 struct Compared {
     /// Whether MuJoCo takes it.
@@ -41,7 +41,7 @@ struct Compared {
     ours: Engines,
 }
 
-/// How an engine fares with a document.
+/// The result of running an engine on a document.
 #[derive(Clone, Copy, Default, Deserialize, Serialize)]
 struct Engines {
     /// It loads, and makes its steps without an error or a number that is not finite.
@@ -232,7 +232,7 @@ impl Peer {
         Some(Self { model, data })
     }
 
-    /// Tells whether it makes its steps.
+    /// Returns whether it makes its steps.
     fn steps(&self) -> bool {
         let mut data = self.model.make_data();
         (0..STEPS).all(|_| data.step(&self.model).is_ok()) && data.qpos.iter().all(|v| v.is_finite())

@@ -22,7 +22,8 @@ const CONDITION: f64 = 1e8;
 /// Regularisation of a constraint row below which they are noise, too.
 const REGULARISATION: f64 = 1e-13;
 
-/// Largest entry of a row of the Jacobian below which it is rounding errors, of what moves nothing. MuJoCo leaves out rows of zeros alone.
+/// A row of the Jacobian with no larger entry than this is rounding error: its constraint moves nothing. MuJoCo leaves out only rows of
+/// zeros.
 const RATE: f64 = 1e-12;
 
 /// Largest position and velocity from which MuJoCo continues.
@@ -31,8 +32,8 @@ const MAX_VALUE: f64 = 1e10;
 /// Times that MuJoCo is stepped from nearly the same state where the sides differ.
 const NUDGES: u64 = 8;
 
-/// Last bits by which positions and velocities change then: one, and where a solver ends at its limit of iterations, far from the
-/// minimum, as many as the rows of both sides are apart, since each iteration makes more of them.
+/// Last bits by which positions and velocities then change. One is enough, except where a solver stops at its limit of iterations, far
+/// from the minimum: there it is the difference between the rows of both sides, which each iteration amplifies.
 const BITS: [i32; 2] = [1, 512];
 
 /// Result of giving a document to both sides.
@@ -41,7 +42,7 @@ pub enum Taken {
     Refused(String),
     /// Ours refuses what MuJoCo loads, for a reason that is meant.
     Stricter(&'static str),
-    /// One side alone loads it.
+    /// Only one side loads it.
     ByOne(Measured),
     /// Both load it.
     Both(Box<Sides>),
@@ -87,7 +88,7 @@ pub struct Sides {
 }
 
 impl Sides {
-    /// Gives a document to both sides.
+    /// Loads a document with both sides.
     pub fn load(api: &'static Mujoco, text: &str) -> Taken {
         let ours = our_model(text);
         let theirs = Simulation::new(api, "m.xml", &[("m.xml", text.as_bytes())]);
@@ -330,7 +331,7 @@ pub fn our_model(text: &str) -> Result<Model, LoadError> {
     load_str(text, "m.xml", &MemoryAssets::new()).and_then(compile)
 }
 
-/// Writes what a recipe makes of a model.
+/// Writes the state that a recipe sets for a model.
 pub fn describe_state(model: &Arc<Model>, recipe: &Recipe) -> String {
     let mut state = SoftEngine::new(model.clone(), SoftOptions::default()).new_state();
     recipe.fill(model, &mut state);

@@ -70,7 +70,7 @@ impl Dice {
         numbers(&ends)
     }
 
-    /// Writes two bounds, one of which is sometimes infinite.
+    /// Writes two bounds; sometimes one is infinite.
     pub fn bounds(&mut self, size: f64) -> String {
         let range = self.range(size);
         match (self.rng.u8(..40), range.split_once(' ')) {

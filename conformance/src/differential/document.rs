@@ -47,7 +47,7 @@ struct Writer<'a> {
     /// Geoms that a tendon may wrap around.
     rounds: Vec<String>,
     cameras: Vec<String>,
-    /// The height field, where there is one.
+    /// The height field, if any.
     hfield: Option<Node>,
     /// Meshes, with the elements that define them.
     meshes: Vec<Node>,
@@ -150,8 +150,8 @@ impl Writer<'_> {
         root
     }
 
-    /// Generates a name. It ends in a letter: beside a `<replicate>`, MuJoCo takes an element for a copy if its name is another one
-    /// followed by the number of a copy.
+    /// Generates a name. It ends in a letter: in a document with a `<replicate>`, MuJoCo treats an element as a copy if its name is another
+    /// one followed by the number of a copy.
     fn name(&mut self, kind: &str) -> String {
         self.named += 1;
         format!("{kind}{}n", self.named)
@@ -322,8 +322,8 @@ impl Writer<'_> {
         body
     }
 
-    /// Adds copies of a geom or a body, at times copies of copies. Others refer to what is in there by the names that are written, or to none of
-    /// it.
+    /// Adds copies of a geom or a body, at times copies of copies. Other elements refer to the contents by their written names, or to none of
+    /// them.
     fn replicate(&mut self, parent: &mut Node) {
         if self.dice.chance(0.95) {
             return;

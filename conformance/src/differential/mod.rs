@@ -1,4 +1,4 @@
-//! Random legal documents beside MuJoCo 3.3.0, one step from random states each.
+//! Random legal documents compared with MuJoCo 3.3.0, one step from random states each.
 //!
 //! Documents follow from the loader's own list of elements and attributes ([`language`]) and from a line for each of
 //! them that says how ([`rules`]), so that a new attribute is either drawn or a test fails. [`document`] puts the elements together,

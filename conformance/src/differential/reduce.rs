@@ -47,7 +47,7 @@ fn differs(api: &'static Mujoco, document: &Node, recipe: Option<&Recipe>, quant
 /// Maximum number of smaller documents tried for a finding, enough for all except those with hundreds of attributes.
 pub const ATTEMPTS: usize = 600;
 
-/// Takes away what is not needed for the difference, until nothing more can go or [`ATTEMPTS`] smaller documents were tried.
+/// Removes what the difference does not need, until nothing more can go or [`ATTEMPTS`] smaller documents were tried.
 pub fn reduce(api: &'static Mujoco, finding: &Finding) -> Finding {
     let mut best = finding.clone();
     // a difference that shrinks to rounding is another one

@@ -17,10 +17,10 @@ use whole::*;
 /// The source of an attribute's values.
 #[derive(Clone, Copy)]
 pub enum How {
-    /// It changes no physics: names, colours, sizes of what is only drawn.
+    /// It does not change the physics: names, colours, sizes of drawn elements.
     Nothing,
-    /// By the place of the element in the document, as with references. Here are values that fit the document of
-    /// [`super::single`]; where there are none, all words of the attribute do.
+    /// By the place of the element in the document, as with references. These values fit the document of [`super::single`]; if there are none,
+    /// every word of the attribute fits.
     Placed(&'static [&'static str]),
     /// Any of its words, with a probability.
     Word(f64),

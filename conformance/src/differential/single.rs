@@ -114,7 +114,7 @@ fn unbalance(document: &mut Node) {
     }
 }
 
-/// Makes copies of what a `<replicate>` holds.
+/// Makes copies of the elements in a `<replicate>`.
 fn make_copies(document: &mut Node, at: usize) {
     if let Some(node) = document.nth_mut(at)
         && node.get("count") == Some("0")
@@ -215,7 +215,7 @@ pub struct Meaning {
     steps: Vec<Vec<f64>>,
 }
 
-/// Returns what MuJoCo makes of the document without the attribute.
+/// Returns the model that MuJoCo compiles from the document without the attribute.
 ///
 /// # Errors
 /// One side refuses it.

@@ -10,7 +10,7 @@ use super::node::Node;
 use super::reduce::Finding;
 use super::state::Recipe;
 
-/// Findings that are kept of each quantity.
+/// Number of findings kept for each quantity.
 const KEPT: usize = 5;
 
 /// A quantity over all documents.

@@ -179,7 +179,7 @@ impl Case {
         Box::new(RapierEngine::new(self.model.clone(), options).expect("MIMo fits Rapier's multibodies"))
     }
 
-    /// Lists the degrees of freedom that belong to objects, not to MIMo.
+    /// Lists the degrees of freedom of objects other than MIMo.
     pub fn object_dofs(&self) -> Vec<usize> {
         let m = &self.model;
         let of_object = |&d: &usize| m.jnt_name[m.dof_jntid[d]].is_empty();

@@ -14,7 +14,7 @@ const REST: usize = 500;
 pub struct Episode {
     /// The way MIMo is moved.
     pub motion: Motion,
-    /// Decides all that is random, and which joints are locked.
+    /// Draws everything random, and the locked joints.
     pub seed: u64,
 }
 
@@ -50,7 +50,7 @@ impl Episode {
         params
     }
 
-    /// Brings the simulation to the start, `qpos0` with random velocities, and gives the controls.
+    /// Moves the simulation to the start, `qpos0` with random velocities, and returns the controls.
     pub fn start(&self, case: &Case, simulation: &mut Simulation) -> (Drive, Shared<Params>) {
         let mut drive = Drive::new(&case.model, self.motion, self.seed);
         let params = self.params(case, &mut drive);

@@ -14,7 +14,7 @@ pub use case::{Case, SUBJECTS, Subject, example_configs};
 pub use drive::{Drive, Motion};
 pub use episode::Episode;
 
-/// Runs `work` on each item, in as many threads as there are cores; each thread makes its own workplace.
+/// Runs `work` on each item, with one thread per core. Each thread makes its own workspace.
 pub fn parallel<T: Sync, W, R: Send>(
     items: &[T],
     workplace: impl Fn() -> W + Sync,

@@ -48,7 +48,7 @@ pub struct OneStep {
     pub large: Vec<(f64, f64)>,
     /// Number of contacts seen.
     pub contacts: usize,
-    /// States whose contacts are not as many, of the same geoms, in the same order.
+    /// States whose contacts differ in number, geoms or order.
     pub mismatches: Vec<String>,
     /// States that the engine did not step, and why.
     pub failures: Vec<String>,

@@ -1,4 +1,4 @@
-//! Open-loop rollouts: how errors grow, beside how MuJoCo's own grow from a start 1e-7 away.
+//! Open-loop rollouts: the growth of errors, compared with that of MuJoCo's own from a start 1e-7 away.
 
 use babybench::mimo::MimoJoints;
 use babybench::model::EqualityKind;
@@ -46,7 +46,7 @@ pub struct Path {
 pub struct Distance {
     /// Root mean square over MIMo's joint angles, rad.
     pub joints: Vec<f64>,
-    /// Largest of the coordinates of all that is free, m or 1.
+    /// Largest difference of a coordinate of the free bodies, m or 1.
     pub free: Vec<f64>,
     /// Acceleration of the first step, relative to its largest value.
     pub first_qacc: f64,

@@ -33,7 +33,7 @@ pub enum Kind {
 pub enum Size {
     /// Always the same.
     Fixed(usize),
-    /// That of a size of `mjModel` or `mjData`.
+    /// A named size of `mjModel` or `mjData`.
     Named(&'static str),
     /// A size of `mjModel` times a number.
     Times(&'static str, usize),

@@ -61,7 +61,7 @@ pub fn reference() -> Result<&'static Mujoco, String> {
         match mujoco.version() {
             offsets::VERSION => Ok(mujoco),
             other => Err(format!(
-                "{} calls itself {other}, the offsets are those of {}: fetch it anew",
+                "{} calls itself {other}, the offsets are those of {}: fetch it again",
                 path.display(),
                 offsets::VERSION
             )),

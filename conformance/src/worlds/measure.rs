@@ -22,7 +22,7 @@ const HELD: usize = 10;
 /// Steps of a rollout.
 const ROLLOUT: usize = 100;
 
-/// Distance of the start of MuJoCo's own rollout beside it.
+/// Distance between the starts of MuJoCo's two rollouts.
 const APART: f64 = 1e-10;
 
 /// Batches of steps whose CPU times are compared, and steps of a batch.
@@ -54,7 +54,7 @@ pub struct Figures {
     /// The largest difference of a compiled array, in units of its limit.
     #[serde(deserialize_with = "or_nan")]
     pub arrays: f64,
-    /// That array, and the place of the difference.
+    /// The array with that difference, and its place.
     pub farthest_array: String,
     /// States compared.
     pub states: usize,
@@ -189,8 +189,8 @@ fn step(sides: &mut Sides, start: &State, out: &mut Figures, errors: &mut Vec<f6
     }
 }
 
-/// Returns how far MuJoCo is from itself when the last bits of the positions change, and when its solver goes on to the end, which its tolerance
-/// cannot ask for where forces are huge; and whether it has other contacts then.
+/// Returns how far MuJoCo is from itself when the last bits of the positions change and when its solver iterates to convergence, which no
+/// tolerance can demand where forces are huge. Also returns whether the contacts differ then.
 fn spread(sides: &mut Sides, start: &State, qacc: &[f64], contacts: usize) -> (f64, bool) {
     let (mut own, mut others, mut rng) = (0.0_f64, false, Rng::with_seed(1));
     for _ in 0..NUDGES {

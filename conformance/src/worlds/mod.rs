@@ -1,6 +1,6 @@
 //! Documents that people have, MuJoCo 3.3.0 and ours side by side.
 //!
-//! [`find`] lists the documents under some folders, [`compare_all`] puts them beside MuJoCo, and [`table`] writes what came out, for
+//! [`find`] lists the documents under some folders, [`compare_all`] compares them with MuJoCo, and [`table`] writes the results, for
 //! people and for programs.
 
 mod find;
@@ -40,7 +40,7 @@ pub enum Outcome {
     Fell,
 }
 
-/// A document beside MuJoCo.
+/// A document compared with MuJoCo.
 pub struct World {
     /// The requested folder.
     pub folder: PathBuf,

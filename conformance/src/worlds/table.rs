@@ -1,4 +1,4 @@
-//! Documents beside MuJoCo, as a table for people and as JSON for programs.
+//! The comparison of documents with MuJoCo, as a table for people and as JSON for programs.
 
 use std::collections::BTreeMap;
 use std::fmt::Write;
@@ -30,7 +30,7 @@ fn short(value: f64) -> String {
     }
 }
 
-/// Writes the tables of totals, documents at which MuJoCo crashes, the tables of documents that both take, and of reasons.
+/// Writes the totals, the documents that crash MuJoCo, those that both load, and the reasons for refusals.
 pub fn text(worlds: &[World]) -> String {
     totals(worlds) + &fallen(worlds) + &taken(worlds) + &reasons(worlds)
 }

@@ -1,4 +1,4 @@
-//! Evaluation of what was learned, in episodes of its own.
+//! Evaluation of the trained policy, in separate episodes.
 
 use std::ops::ControlFlow;
 use std::sync::Arc;

@@ -10,7 +10,7 @@
 //! - [`evaluation`]: what was learned, as a [`Policy`](babybench::policy::Policy).
 //!
 //! Environments are stepped on all cores, but everything that is learned from is read in the order of environments, so the same seed
-//! gives the same bits, whatever the number of threads.
+//! gives the same bits for any number of threads.
 #![forbid(unsafe_code)]
 #![deny(missing_docs)]
 

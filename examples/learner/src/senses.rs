@@ -48,7 +48,7 @@ impl Senses {
     }
 }
 
-/// Brings numbers to mean 0 and variance 1, by all that it has seen (Welford 1962).
+/// Normalises numbers to mean 0 and variance 1, by the statistics of all numbers so far (Welford 1962).
 #[derive(Clone, Debug, Default)]
 pub struct Normalizer {
     count: f64,

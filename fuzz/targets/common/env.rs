@@ -7,7 +7,7 @@ use babybench::env::{
 };
 use babybench::{Blueprint, Config, Env, Model};
 
-/// A step of MIMo costs as much as hundreds of the small scene: he goes on after one input in this many.
+/// A step of MIMo costs as much as hundreds of the small scene, so only one input in this many steps him.
 const RARE: usize = 64;
 
 /// Returns an environment of MIMo without touch and eyes, after a reset.
@@ -18,14 +18,14 @@ pub fn mimo() -> Env {
     env
 }
 
-/// Returns whether MIMo goes on after an input.
+/// Returns whether an input also steps MIMo.
 pub fn goes_on(data: &[u8]) -> bool {
     let sum = data.iter().fold(0usize, |sum, &byte| sum.wrapping_mul(31).wrapping_add(byte.into()));
     (sum ^ sum >> 7) % RARE == 0
 }
 
-/// An arm with muscles above a floor, and a ball, with whatever an environment can remember: goals, the memory of the task, delays,
-/// pain, noise.
+/// An arm with muscles above a floor, and a ball, with everything that an environment can remember: goals, the task's memory,
+/// delays, pain, noise.
 #[derive(Clone, Debug, Default)]
 struct Small {
     steps: [f64; 2],
@@ -76,7 +76,7 @@ impl Task for Small {
     }
 }
 
-/// Returns an environment of a small scene that remembers a great deal, after a reset.
+/// Returns an environment of a small scene with a lot of memory, after a reset.
 pub fn small() -> Env {
     let mut config = Config {
         vision_active: false,

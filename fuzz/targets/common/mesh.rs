@@ -1,11 +1,12 @@
-//! Meshes: what is read names what is there, takes memory in proportion to the file, and makes a model or an error that names the file.
+//! Meshes. What is read refers only to existing vertices, takes memory in proportion to the file, and makes a model or an error that
+//! names the file.
 
 use babybench::assets::MemoryAssets;
 use babybench::formats::mesh::{MeshFormat, NONE, Triangles};
 use babybench::render::Scenery;
 use babybench::{Limits, mjcf_loader, physics};
 
-/// Larger files are left alone: their cost hides others.
+/// Larger files are skipped, because their cost hides that of others.
 const LARGE: usize = 1 << 14;
 
 /// Reads a file, and compiles a model of it.

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Format:
-    """A format: what writes it."""
+    """A format and the function that writes it."""
 
     extra: str
     """The extra of this package that installs what it needs; the module of this package that writes it has the same name."""
@@ -59,7 +59,7 @@ def library(format: str) -> Any:
 
 
 def check(formats: list[str]) -> None:
-    """Checks that formats exist and that their libraries are there, before anything is written.
+    """Checks that formats exist and that their libraries are installed, before anything is written.
 
     Raises:
         ValueError: The format does not exist.
@@ -72,7 +72,7 @@ def check(formats: list[str]) -> None:
 
 
 def export(record: Record, formats: list[str], out: Path) -> dict[str, Path]:
-    """Writes a record in formats into a folder; returns where each is.
+    """Writes a record in several formats into a folder; returns the path of each.
 
     Raises:
         ValueError: The format does not exist, or the record has no episodes.

@@ -11,7 +11,7 @@ from babybench_core.export import FORMATS, export
 
 
 def main(arguments: Sequence[str], program: str) -> None:
-    """Does what the arguments say.
+    """Runs the command with its arguments.
 
     Raises:
         SystemExit: It has failed.

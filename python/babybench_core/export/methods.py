@@ -11,7 +11,7 @@ if TYPE_CHECKING:
 
 
 class Exports:
-    """Exports of :class:`babybench.data.Record` by libraries that are imported when they are needed."""
+    """Exports of :class:`babybench.data.Record` by libraries that are imported on first use."""
 
     @property
     def _record(self) -> Record:
@@ -73,7 +73,7 @@ class Exports:
         Args:
             path: The file, ``.rrd``.
             every: Every how many steps there is a pose.
-            eyes_every: Every how many steps there is a pair of images where the record has none: these are drawn anew from
+            eyes_every: Every how many steps there is a pair of images where the record has none: these are redrawn from
                 the recorded positions, as sharp as the resolution allows; 0 for none. Recorded images are taken as they are.
 
         Raises:

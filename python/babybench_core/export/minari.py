@@ -20,7 +20,7 @@ _FOLDER = "MINARI_DATASETS_PATH"
 
 @contextmanager
 def _datasets(path: Optional[Path]) -> Iterator[None]:
-    """Lets Minari write into a folder."""
+    """Makes Minari write into a folder."""
     if path is None:
         yield
         return

@@ -52,7 +52,7 @@ def write(record: Record, path: Path, every: int, eyes_every: int) -> None:
 
 
 def _layout(numbers: list[int]) -> Any:
-    """Returns the initial layout of the viewer: the first episode in 3D, the eyes beside it, curves below."""
+    """Returns the initial layout of the viewer: the first episode in 3D, the eyes next to it, curves below."""
     import rerun.blueprint as rrb
 
     root = f"/episode_{numbers[0]}"

@@ -141,7 +141,7 @@ def sensor_regions(episode: Episode) -> npt.NDArray[np.intp]:
 
 
 def sensor_forces(episode: Episode) -> tuple[npt.NDArray[np.intp], npt.NDArray[np.intp], npt.NDArray[np.float32]]:
-    """Returns the touch of an episode by sensor: steps, sensors and magnitudes, N, of what is not zero, by step, then sensor."""
+    """Returns the touch of an episode by sensor: steps, sensors and nonzero magnitudes, N, by step, then sensor."""
     step = np.repeat(np.arange(episode.steps), np.diff(episode["touch_ptr"]))
     count = len(episode.record.skin()["body"])
     width = max(1, int(episode["touch_len"]) // max(1, count))

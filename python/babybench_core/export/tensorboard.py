@@ -79,7 +79,7 @@ def _framed(events: npt.NDArray[np.uint8]) -> bytes:
 
 
 def _steps(record: Record, number: int, path: Path, every: int) -> None:
-    """Writes the scalars of an episode: one event for each step, whose bytes differ from the last one's in the numbers alone."""
+    """Writes the scalars of an episode: one event per step, whose bytes differ from the last one's only in the numbers."""
     from tensorboard.compat.proto.event_pb2 import Event
     from tensorboard.compat.proto.summary_pb2 import Summary, SummaryMetadata
     from tensorboard.compat.proto.tensor_pb2 import TensorProto

@@ -29,7 +29,7 @@ def touch_on_body(records: Mapping[str, Record], *, what: str = "own", to_scale:
 
     Args:
         records: Records by what they are called: stages of a training, ages.
-        what: ``own`` for touches of the body by itself, ``all`` for whatever touches it, the ground among it.
+        what: ``own`` for touches of the body by itself, ``all`` for any touch, including that of the ground.
         to_scale: Whether bodies of several ages are drawn on one scale, instead of with one height.
 
     Raises:
@@ -96,7 +96,7 @@ def _bar(axes: Any, height: float) -> None:
 
 
 class _Body:
-    """MIMo's skin in a pose in which all of it is seen."""
+    """MIMo's skin in a pose that shows all of it."""
 
     def __init__(self, record: Record) -> None:
         from babybench_core import _native

@@ -12,7 +12,7 @@ from babybench_core.figures import curves, logs
 
 
 def main(arguments: Sequence[str], program: str) -> None:
-    """Does what the arguments say.
+    """Runs the command with its arguments.
 
     Raises:
         SystemExit: It has failed.
@@ -42,7 +42,7 @@ def main(arguments: Sequence[str], program: str) -> None:
 
 
 def draw(results: Sequence[str], metric: str | None, what: str) -> list[tuple[str, Any]]:
-    """Draws what there is in folders: names and figures.
+    """Draws the results in folders: names and figures.
 
     Raises:
         FileNotFoundError: A folder has nothing to draw.

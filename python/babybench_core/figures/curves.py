@@ -160,7 +160,7 @@ def read_benchmark(path: Union[str, Path]) -> dict[str, Any]:
     """Reads the results of a benchmark.
 
     Raises:
-        FileNotFoundError: There is none.
+        FileNotFoundError: The file does not exist.
         ValueError: The file is damaged.
     """
     file = Path(path)

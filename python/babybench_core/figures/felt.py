@@ -1,4 +1,4 @@
-"""Times in which touch sensors felt something, from any contact or from the own body alone."""
+"""Times in which touch sensors felt something, from any contact or only from the own body."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ def shares(record: Record, what: str) -> npt.NDArray[np.float64]:
 
     Args:
         record: The record.
-        what: ``own`` for touches of the body by itself, ``all`` for whatever touches it.
+        what: ``own`` for touches of the body by itself, ``all`` for any touch.
 
     Raises:
         ValueError: Without touch, without episodes, or another ``what``.
@@ -65,7 +65,7 @@ class _Poses:
 def _own(
     episode: Episode, poses: _Poses, step: npt.NDArray[np.intp], sensor: npt.NDArray[np.intp]
 ) -> npt.NDArray[np.bool_]:
-    """Returns for each touch of a sensor whether the own body touches it."""
+    """Returns, for each touch of a sensor, whether it comes from the own body."""
     skin, geoms = episode.record.skin(), episode.manifest["geoms"]
     own = np.array([geom["region"] is not None for geom in geoms])
     pairs = episode["contact_geom"].astype(int)

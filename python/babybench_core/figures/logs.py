@@ -31,7 +31,7 @@ def find(path: Union[str, Path]) -> Path:
     """Returns the file of a training: the one given, or that of the run in a folder.
 
     Raises:
-        FileNotFoundError: There is none.
+        FileNotFoundError: The file does not exist.
     """
     path = Path(path)
     for file in (path, path / "training.jsonl", path / "logs" / "training.jsonl"):

@@ -21,7 +21,7 @@ _ROWS = ("head", "trunk", "arm", "hand", "leg", "foot")
 
 
 def hand_touches(episode: Episode, side: str) -> dict[str, npt.NDArray[np.bool_]]:
-    """Returns in which steps a hand, the palm with its fingers, touches a region, by region and side: ``own arm``, ``other arm``.
+    """Returns the steps in which a hand, the palm with its fingers, touches a region, by region and side (``own arm``).
 
     Touches of a hand by itself do not count.
     """

@@ -58,7 +58,7 @@ def look() -> dict[str, Any]:
 
 
 def figure(width: float, height: float) -> Figure:
-    """Makes an empty figure that belongs to nobody else, of a size in inches.
+    """Creates an empty figure of a size in inches, which pyplot does not manage.
 
     Raises:
         ModuleNotFoundError: matplotlib is not installed.

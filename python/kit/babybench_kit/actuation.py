@@ -53,7 +53,7 @@ class ActuationModel(Replaceable):
         raise NotImplementedError
 
     def substep_update(self) -> None:
-        """Updates the actuators before each physics step of a step but the first."""
+        """Updates the actuators before each physics step of a step except the first."""
 
     def observations(self) -> Array:
         """Returns the actuators' part of proprioception."""
@@ -77,7 +77,7 @@ class EngineActuation(ActuationModel):
 
     _state = frozenset({"control_input"})
     _fixed: ClassVar[frozenset[str]] = frozenset({"actuators", "n_actuators"})
-    """Attributes that the engine does not take over."""
+    """Attributes that the engine does not use."""
 
     def __init_subclass__(cls, **arguments: Any) -> None:
         """Refuses subclasses that change values which the engine does not read."""
@@ -141,14 +141,14 @@ class EngineActuation(ActuationModel):
             self._core.set_controls(self.actuators, self.control_input)
 
     def _own_bounds(self) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
-        """Returns the bounds where bodies beside MIMo have actuators with his names, which the engine does not drive."""
+        """Returns the bounds where other bodies have actuators with MIMo's names, which the engine does not drive."""
         raise NotImplementedError(
             f"{type(self).__name__}: other bodies than MIMo have actuators named act:..., which only SpringDamperModel drives: "
             "name them otherwise, or write a subclass of ActuationModel that sets env.data.ctrl"
         )
 
     def substep_update(self) -> None:
-        """Updates the actuators before each physics step of a step but the first."""
+        """Updates the actuators before each physics step of a step except the first."""
         if self._core.whole:
             self._core.substep()
 
@@ -334,11 +334,11 @@ class MuscleModel(MuscleParts, EngineActuation):
         return self.joint_torque
 
     def set_fmax(self, fmax: ArrayLike) -> None:
-        """Refuses other strengths: they stand in the files of the scene."""
+        """Refuses other strengths: they are in the files of the scene."""
         raise NotImplementedError("the strengths of muscles are `user` of the actuators in the MJCF: change them there")
 
     def set_vmax(self, vmax: ArrayLike) -> None:
-        """Refuses other velocities: they stand in the files of the scene."""
+        """Refuses other velocities: they are in the files of the scene."""
         raise NotImplementedError(
             "the velocities of muscles are `user` of the actuators in the MJCF: change them there"
         )

@@ -1,4 +1,4 @@
-"""The engine as the model and the state that scripts see need it."""
+"""The interface of the engine that the model and the state of scripts need."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ class Beneath(Protocol):
         """Forgets the past."""
 
     def written(self) -> None:
-        """Takes note that a script has written to the state."""
+        """Records that a script has written to the state."""
 
     def show_normals(self, frames: NDArray[np.float64]) -> None:
         """Inverts normals in the frames that a script sees, (n, 9), where feeling has inverted them at this instant."""

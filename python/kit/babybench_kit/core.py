@@ -1,4 +1,4 @@
-"""The engine under an environment: its parts, what it knows of the scene, and the state that scripts hold."""
+"""The engine under an environment: its parts, its data about the scene, and the state that scripts hold."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ class Core:
         assets: The folder of MJCF files and textures; nothing for the embedded ones.
         document: The document, if it is compiled as it stands.
         settled: Whether the engine has let the scene come to rest.
-        whole: Whether the engine drives and senses all that has the names of MIMo's joints and actuators.
+        whole: Whether the engine drives and senses all joints and actuators with MIMo's names.
         engine: The environment in Rust; ``parts`` are the parts of its reset and step.
         names: Names of all elements, by kind.
         course: What is known of the present instant, and who may write to it.
@@ -89,7 +89,7 @@ class Core:
         self.layout = self._proprioception_layout() if self.whole else {}
 
     def _is_whole(self) -> bool:
-        """Tells whether the engine drives and senses all joints and actuators with MIMo's prefixes: others may have them, too."""
+        """Returns whether the engine drives and senses all joints and actuators with MIMo's prefixes, which others may have."""
         motors = sum(name.startswith("act:") for name in self.names["actuator"])
         torques = 3 * sum(name.startswith("proprio:") for name in self.names["sensor"])
         per_motor, seen = {"spring_damper": (1, 2), "muscle": (2, 4), "positional": (1, 1)}[
@@ -125,13 +125,13 @@ class Core:
         self._contacts = self._poses = None
 
     def changed(self) -> None:
-        """Takes note that the state is another one, and computed."""
+        """Records that the state has been replaced, and is computed."""
         self._change("compute")
         if self._live is not None:
             self._live.advance()
 
     def written(self) -> None:
-        """Takes note that a script has written to the state."""
+        """Records that a script has written to the state."""
         self._change("write")
 
     def pull(self) -> None:
@@ -157,24 +157,24 @@ class Core:
         self.changed()
 
     def set_action(self, action: Any) -> None:
-        """Gives an action to the actuators."""
+        """Passes an action to the actuators."""
         self.parts.set_action(action)
         self._show_controls()
 
     def set_controls(self, actuators: NDArray[np.int_], controls: Any) -> None:
-        """Gives controls to some of the actuators."""
+        """Sets the controls of some of the actuators."""
         ctrl = self.engine.state_array("ctrl")
         ctrl[actuators] = controls
         self.engine.write_state("ctrl", ctrl)
         self._show_controls()
 
     def substep(self) -> None:
-        """Updates the actuators, as before each physics step of a step but the first."""
+        """Updates the actuators, as before each physics step of a step except the first."""
         self.parts.substep()
         self._show_controls()
 
     def _show_controls(self) -> None:
-        """Shows new controls to whoever holds the state, lest the old ones be read back."""
+        """Copies new controls to the state that scripts hold; otherwise the old ones would be read back."""
         if self._live is not None and self.course.copy.present:
             self._live.data.ctrl[:] = self.engine.state_array("ctrl")
 
@@ -190,7 +190,7 @@ class Core:
         return self.engine.state_array(name)
 
     def move(self, qpos: Any) -> None:
-        """Puts the scene at other positions, from which nothing is computed yet; velocities stay."""
+        """Moves the scene to other positions without computing anything from them; velocities stay."""
         self.parts.set_position(qpos, self.engine.state_array("qvel"))
         self.written()
         if self._live is not None:
@@ -227,7 +227,7 @@ class Core:
             self.course.change("sense")
 
     def observation(self) -> dict[str, NDArray[Any]]:
-        """Returns the last observation in fresh arrays."""
+        """Returns the last observation in new arrays."""
         return self.engine.observation()
 
     def proprioception(self) -> Array:

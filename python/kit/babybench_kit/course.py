@@ -38,7 +38,7 @@ from typing import Any
 
 
 class Moment(Enum):
-    """How far the present instant is computed: whether its forces and contacts are known, sensed, and felt by the skin."""
+    """The progress of the current instant: whether its forces and contacts are known, sensed, and felt by the skin."""
 
     CLEARED = (False, False, False)
     """The past is forgotten, and nothing computed: after ``mujoco.mj_resetData``."""
@@ -59,11 +59,11 @@ class Copy(Enum):
     """The instant that the scripts' copy of the state shows."""
 
     LATE = "late"
-    """An earlier instant; also while there is no copy, as nobody has asked for one."""
+    """An earlier instant; also while there is no copy, because no script has requested one."""
     POSES = "poses"
-    """The present, but for contacts and constraints."""
+    """The current instant, except for contacts and constraints."""
     LATE_WHOLE = "late, then whole"
-    """An earlier instant; as contacts were asked for once, they will be there with the next."""
+    """An earlier instant; contacts were requested once, so the next instant will have them."""
     WHOLE = "whole"
     """The present, contacts and constraints included."""
 
@@ -74,17 +74,17 @@ class Copy(Enum):
 
     @property
     def contacts(self) -> bool:
-        """Whether contacts and constraints were asked for, and are there whenever it shows the present."""
+        """Whether contacts and constraints were requested, and are therefore computed whenever it shows the current instant."""
         return self is Copy.LATE_WHOLE or self is Copy.WHOLE
 
 
 class Turn(Enum):
-    """The part that runs at present."""
+    """The part that currently runs."""
 
     SCRIPT = "script"
     """Code that may hold the copy and write to it."""
     ENGINE = "engine"
-    """The engine alone, from an action to its observation, with no method that a subclass has replaced."""
+    """Only the engine, from an action to its observation, with no method that a subclass has replaced."""
 
 
 class Share(Enum):
@@ -99,7 +99,7 @@ class Share(Enum):
 
 
 class IllegalChange(RuntimeError):
-    """A change that the tables do not have: a fault of this package, not of a script."""
+    """A change that is not in the tables: a fault of this package, not of a script."""
 
 
 _MOMENTS: dict[str, dict[Moment, Moment]] = {

@@ -131,7 +131,7 @@ class BabyBenchEnv(MIMoEnv):
             self.init_qpos, self.init_qvel = core.engine.state_array("qpos"), core.engine.state_array("qvel")
 
     def compute_reward(self, achieved_goal: Any = None, desired_goal: Any = None, info: Any = None, **_: Any) -> Any:
-        """Returns 0: the reward is the learner's own affair."""
+        """Returns 0: learners define their own reward."""
         return 0
 
     def reset_model(self) -> Observation:
@@ -144,7 +144,7 @@ class BabyBenchEnv(MIMoEnv):
         return self._get_obs()
 
     def _randomize_reset(self) -> None:
-        """Changes the start of an episode; here nothing."""
+        """Changes the start of an episode; does nothing here."""
 
     def _start_actions(self) -> None:
         """Takes random actions at the start of an episode."""
@@ -169,7 +169,7 @@ class BabyBenchEnv(MIMoEnv):
         return observation, reward, terminated, truncated, info
 
     def _info_reset(self) -> None:
-        """Adds the last episode to the log, and starts counting anew."""
+        """Adds the last episode to the log, and resets the counters."""
         info = self._info()
         info["steps"] = self.steps
         self._info_hist.append(info)
@@ -189,7 +189,7 @@ class BabyBenchEnv(MIMoEnv):
         return {}
 
     def _info_init(self) -> None:
-        """Starts counting anew."""
+        """Resets the counters."""
 
     def is_success(self, achieved_goal: Any = None, desired_goal: Any = None) -> bool:
         """Returns False."""
@@ -281,7 +281,7 @@ class BabyBenchSelfTouchEnv(BabyBenchEnv):
         return {"right_hand_touches": right, "left_hand_touches": left}
 
     def _info_init(self) -> None:
-        """Starts counting anew."""
+        """Resets the counters."""
         self._core.parts.clear_info()
         self._counted = (0, 0)
         self._self_touch_right_hand: list[int] = []
@@ -306,7 +306,7 @@ class BabyBenchHandRegardEnv(BabyBenchEnv):
         return dict(zip(self._PAIRS, parts.regards or (0, 0, 0, 0)))
 
     def _info_init(self) -> None:
-        """Starts counting anew."""
+        """Resets the counters."""
         self._core.parts.clear_info()
 
     def _randomize_reset(self) -> None:

@@ -85,7 +85,7 @@ class Eval:
 
 
 def _counted(logs: Sequence[Record]) -> Sequence[Record]:
-    """Returns the records that count: the last ten thousand, without the oldest of all, which no episode belongs to."""
+    """Returns the records that count: the last ten thousand, without the oldest one, which belongs to no episode."""
     count = min(_MOST, len(logs)) - 1
     return logs[len(logs) - count :] if count > 0 else []
 

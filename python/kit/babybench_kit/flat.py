@@ -13,7 +13,7 @@ MAX_DEPTH = 50
 
 
 def _found(file: str, folder: Path, beside: Path) -> Path:
-    """Returns where a file lies: seen from the folder of the document, or else beside the file that names it."""
+    """Returns the path of a file: relative to the folder of the document, or else next to the file that names it."""
     path = folder / file
     return path if path.is_file() else beside / file
 
@@ -43,7 +43,7 @@ def _spliced(
 
 
 def flat(path: Path, name_file: Callable[[Path], str] = str) -> ElementTree.Element:
-    """Returns a document with what it includes, and names each of its files by ``name_file`` of where the file lies.
+    """Returns a document with its includes, and names each of its files by ``name_file`` of the file's path.
 
     Raises:
         FileNotFoundError: An included file does not exist.

@@ -1,4 +1,4 @@
-"""Models that a program compiles itself, and the states it makes of them, in the place of ``env.model`` and ``env.data``."""
+"""Models that a program compiles itself, and their states, which replace ``env.model`` and ``env.data``."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ _COPIED = {"tex_data"}
 
 @dataclass
 class Given:
-    """A model that a program has compiled, and the state that goes with it, until an environment has taken them over."""
+    """A model that a program has compiled, and the state that goes with it, until an environment has adopted them."""
 
     model: Any
     _data: Any = None
@@ -82,7 +82,7 @@ def take_model(core: Core, model: Any, path: str) -> None:
     """Gives an environment what a program has written into a model since it was compiled.
 
     Raises:
-        AttributeError, ValueError: Something that the environment cannot take over.
+        AttributeError, ValueError: The environment cannot use a value.
     """
     if given_mujoco.is_model(model):
         given_mujoco.adopt(core, model, path)
@@ -201,7 +201,7 @@ class TakesModels:
 
     @data.setter
     def data(self, data: Any) -> None:
-        """Takes the numbers of a state over: positions, velocities, controls, applied forces, mocap poses."""
+        """Copies the numbers of a state: positions, velocities, controls, applied forces, mocap poses."""
         if self._given is not None:
             self._given.data = data
         elif data is not self._core.data:
@@ -230,7 +230,7 @@ class TakesModels:
         self._making = False
 
     def _end_given(self) -> None:
-        """Gives the engine what a program has written into its own model and state."""
+        """Passes a program's changes to its own model and state to the engine."""
         given, self._given = self._given, None
         assert given is not None
         take_model(self._core, given.model, self.fullpath)

@@ -1,4 +1,4 @@
-"""What the tasks of MIMo's environments say."""
+"""The interface of the tasks of MIMo's environments."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ class GoalEnv(SensingEnv):
     """The methods that each task defines."""
 
     def reset_model(self) -> Observation:
-        """Puts the scene at the start of an episode, and returns the observation."""
+        """Moves the scene to the start of an episode, and returns the observation."""
         raise NotImplementedError
 
     def is_success(self, achieved_goal: Any, desired_goal: Any) -> bool:

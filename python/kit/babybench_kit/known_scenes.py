@@ -29,7 +29,7 @@ def prepare_scene(model_path: str | os.PathLike[str]) -> None:
 
 
 def known_scene(model_path: str | os.PathLike[str], any_scene: bool) -> Scene:
-    """Returns what is known of a scene, which is written first if it is one of this package."""
+    """Returns the data about a scene, which is written first if it is one of this package."""
     path = Path(model_path)
     prepare_scene(path)
     if path.is_file():

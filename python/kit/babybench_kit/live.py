@@ -1,4 +1,4 @@
-"""The state that scripts hold, ``env.data``: kept up to date while somebody holds it, and read back where it was written to."""
+"""The state that scripts hold, ``env.data``: updated while a script holds it, and read back where it was written to."""
 
 from __future__ import annotations
 
@@ -29,11 +29,11 @@ class Live:
         raise NotImplementedError
 
     def refresh(self) -> None:
-        """Brings the state up to date."""
+        """Updates the state."""
         raise NotImplementedError
 
     def advance(self) -> None:
-        """Takes note that the engine's state is another one."""
+        """Records that the engine's state has been replaced."""
         self.course.change("advance")
         if self.held():
             self.refresh()
@@ -87,7 +87,7 @@ class ViewLive(Live):
         return sys.getrefcount(self.data) > self.idle_data or sys.getrefcount(self.data._memory) > self.idle
 
     def refresh(self) -> None:
-        """Brings the state up to date."""
+        """Updates the state."""
         own = self.data.__dict__
         self.core.parts.fill(self.arrays)
         own["time"] = self.core.engine.time

@@ -1,4 +1,4 @@
-"""The look of a model: what pictures follow, and no step reads."""
+"""The look of a model: values that pictures follow and no step reads."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ def visual_arrays(model: Any) -> dict[str, NDArray[Any]]:
 
 
 def take_looks(core: Beneath, given: dict[str, NDArray[Any]]) -> None:
-    """Gives an environment the look of another one, of which it is a copy."""
+    """Applies the look of an environment to a copy of it."""
     changed = looks.take(core.engine, given)
     for name in looks.LOOKS.intersection(changed):
         getattr(core.model, name)[...] = changed[name]

@@ -54,7 +54,7 @@ _UNCALLED = ("_step_mujoco_simulation", "viewer_setup")
 
 
 class MIMoEnv(TakesModels, GoalEnv):
-    """MIMo in a scene, with the senses and the actuation that the arguments ask for.
+    """MIMo in a scene, with the senses and the actuation that the arguments request.
 
     Args:
         model_path: The scene: any MJCF document with MIMo.
@@ -128,7 +128,7 @@ class MIMoEnv(TakesModels, GoalEnv):
         config: Mapping[str, Any] | None = None,
         age: float | None = None,
     ) -> None:
-        """Compiles the scene, and takes one physics step if it is none of BabyBench's."""
+        """Compiles the scene, and takes one physics step if it is not one of BabyBench's."""
         self._age = age
         self.frame_skip = frame_skip
         self.proprio_params, self.touch_params = proprio_params, touch_params
@@ -148,7 +148,7 @@ class MIMoEnv(TakesModels, GoalEnv):
         self._sense_anew()
 
     def _sense_anew(self) -> None:
-        """Makes spaces and senses for the model, and takes one physics step if the scene is none of BabyBench's."""
+        """Makes spaces and senses for the model, and takes one physics step if the scene is not one of BabyBench's."""
         self._set_action_space()
         self._own_seed = self.action_space.np_random
         self.mujoco_renderer = MujocoRenderer(self._core, self._camera_config)
@@ -196,7 +196,7 @@ class MIMoEnv(TakesModels, GoalEnv):
     def _compile(
         self, scene: Scene, actuation_model: type[ActuationModel], config: Mapping[str, Any], age: float | None
     ) -> Core:
-        """Compiles a scene for the senses and the actuation that the arguments ask for."""
+        """Compiles a scene for the senses and the actuation that the arguments request."""
         names = (name for cls in actuation_model.__mro__ if (name := getattr(cls, "_engine_name", "")))
         settings = engine_settings(
             config,
@@ -275,7 +275,7 @@ class MIMoEnv(TakesModels, GoalEnv):
         }
 
     def _set_initial_position(self, initial_qpos: Mapping[str, ArrayLike] | None) -> None:
-        """Puts joints at the positions that a dictionary has by their names."""
+        """Moves joints to the positions that a dictionary has by their names."""
         if not initial_qpos:
             return
         array, joints = self._core.blueprint.model_array, self._core.names["joint"]
@@ -294,12 +294,12 @@ class MIMoEnv(TakesModels, GoalEnv):
     # --- physics ---
 
     def _set_action(self, action: ArrayLike) -> None:
-        """Gives an action to the actuation model."""
+        """Passes an action to the actuation model."""
         self._core.pull()
         self.actuation_model.action(self._delayed_action(action))
 
     def _delayed_action(self, action: ArrayLike) -> ArrayLike:
-        """Returns the action that arrives when another one is given: the same, but in MIMo 3."""
+        """Returns the action that arrives when another one is given: the same one, except in MIMo 3."""
         return action
 
     def _single_mujoco_step(self) -> None:
@@ -319,7 +319,7 @@ class MIMoEnv(TakesModels, GoalEnv):
             self._substep_callback()
 
     def set_state(self, qpos: ArrayLike, qvel: ArrayLike) -> None:
-        """Puts the scene at positions (nq,) and velocities (nv,), and computes everything there."""
+        """Moves the scene to positions (nq,) and velocities (nv,), and computes everything there."""
         self._core.forward(qpos, qvel)
 
     def _reset_simulation(self) -> None:
@@ -329,13 +329,13 @@ class MIMoEnv(TakesModels, GoalEnv):
         self.goal = self.sample_goal()
 
     def _step_callback(self) -> None:
-        """Is called after the physics steps of a step."""
+        """Called after the physics steps of a step."""
 
     def _substep_callback(self) -> None:
-        """Is called after each physics step."""
+        """Called after each physics step."""
 
     def _obs_callback(self) -> None:
-        """Is called after the observation of a step."""
+        """Called after the observation of a step."""
 
     # --- Gymnasium ---
 
@@ -367,7 +367,7 @@ class MIMoEnv(TakesModels, GoalEnv):
         core.pull()
         if self._share is not Share.NOTHING:
             return self._acted(action)
-        # as no subclass takes part, nobody writes to the state before the observation
+        # as no subclass takes part, no script writes to the state before the observation
         core.course.change("begin")
         try:
             return self._acted(action)
@@ -411,7 +411,7 @@ class MIMoEnv(TakesModels, GoalEnv):
     # --- copies ---
 
     def __getstate__(self) -> dict[str, Any]:
-        """Returns what a copy continues with: the arguments, the state of the engine, and what else the environment holds."""
+        """Returns the data from which a copy continues: arguments, state of the engine, and everything else."""
         kept = {name: value for name, value in self.__dict__.items() if name not in _REMADE}
         engine = self._core.engine
         return {
@@ -423,7 +423,7 @@ class MIMoEnv(TakesModels, GoalEnv):
         }
 
     def __setstate__(self, state: dict[str, Any]) -> None:
-        """Makes the environment anew and continues there."""
+        """Rebuilds the environment and continues there."""
         kept = state["kept"]
         self.__init__(*kept["_ezpickle_args"], **kept["_ezpickle_kwargs"])  # type: ignore[misc,unused-ignore]
         source = state["source"]

@@ -1,4 +1,4 @@
-"""The model that scripts see, ``env.model``: MuJoCo's own, or what stands for it."""
+"""The model that scripts see, ``env.model``: MuJoCo's own, or its stand-in."""
 
 from __future__ import annotations
 
@@ -61,7 +61,7 @@ def _with_small_textures(config: dict[str, Any], xml: str, images: dict[str, byt
 
 
 def _grow(model: Any, core: Beneath) -> None:
-    """Gives MuJoCo's model of a document the numbers of the engine's, in which MIMo has another age."""
+    """Copies the engine's numbers, in which MIMo has another age, to MuJoCo's model of a document."""
     for name in core.blueprint.MODEL_ARRAYS:
         own, array = getattr(model, name, None), np.asarray(core.blueprint.model_array(name))
         if name == "actuator_gear":
@@ -105,7 +105,7 @@ def mujoco_model(mujoco: ModuleType, core: Beneath, model: Any) -> Any:
 
 
 def view_model(core: Beneath) -> ModelView:
-    """Returns what stands for MuJoCo's model."""
+    """Returns the stand-in for MuJoCo's model."""
     model = ModelView(core.blueprint, core.engine, core.width, core.height)
     if core.place is not None:
         model.body_pos[1] = core.place
@@ -142,7 +142,7 @@ class Watched:
         self.fixed_options = {} if isinstance(model, ModelView) else self._other_options()
 
     def _fix(self) -> dict[str, NDArray[Any]]:
-        """Makes MuJoCo's other arrays read-only, and remembers them, as they can be written in other ways."""
+        """Makes MuJoCo's other arrays read-only, and remembers them, because there are other ways to write to them."""
         fixed = {}
         for name in dir(self.model):
             free = name in _ALLOWED or name in LOOKS or name in _native.CHANGEABLE
@@ -164,7 +164,7 @@ class Watched:
         return {name: np.array(value) for name, value in values.items() if isinstance(value, (int, float, np.ndarray))}
 
     def follow(self) -> None:
-        """Gives the engine what a script has written into the model.
+        """Passes a script's changes to the model to the engine.
 
         Raises:
             ValueError: Numbers that the engine does not have, that are not finite or too small.
@@ -200,7 +200,7 @@ class Watched:
         self.core.timestep = engine.dt / self.core.config["frame_skip"]
 
     def _paint(self, changed: list[int], visual: tuple[float, ...]) -> None:
-        """Gives the engine what pictures follow, where that was written."""
+        """Passes a script's changes to the look of the model to the engine."""
         numbers = [number for number in changed if is_look(self.names[number])]
         looks: dict[str, Any] = {}
         if visual != self.visual:

@@ -32,7 +32,7 @@ _PREFIXES = ("efc_", "iefc_", "island_", "map_", "dof_island", "tree_island")
 
 @lru_cache(maxsize=1)
 def data_class(mujoco: ModuleType) -> Any:
-    """Returns MuJoCo's class of states, with contacts and constraints that are computed when they are asked for."""
+    """Returns MuJoCo's class of states, with contacts and constraints that are computed when they are first read."""
     base = mujoco.MjData
 
     def completed(method: Callable[..., Any]) -> Callable[..., Any]:
@@ -109,7 +109,7 @@ class MujocoLive(Live):
         return self._references() > self.idle
 
     def refresh(self) -> None:
-        """Brings the state up to date."""
+        """Updates the state."""
         data, model, parts = self.data, self.model, self.core.parts
         parts.fill(self.arrays)
         if self.muscle:
@@ -123,7 +123,7 @@ class MujocoLive(Live):
         self.course.change("show")
 
     def _compute(self, functions: list[Any]) -> None:
-        """Calls functions of MuJoCo with the positions and velocities that all computed numbers are of, which stay there."""
+        """Calls functions of MuJoCo with the positions and velocities from which everything was computed; these stay."""
         model, data = self.model, self.data
         self.core.parts.fill_start(self._eq_active, self._state[:2])
         for function in functions:

@@ -55,7 +55,7 @@ def _panel(env: Any, view: str) -> NDArray[Any] | None:
 
 
 def evaluation_img(env: Any, up: str = "side2", down: str = "top") -> Image:
-    """Draws a frame of an evaluation's video, (480, 720, 3): the room, and two small pictures beside it.
+    """Draws a frame of an evaluation's video, (480, 720, 3): the room, and two small pictures next to it.
 
     Args:
         env: The environment; its ``render_size`` is 480.
@@ -121,7 +121,7 @@ def _felt(env: Any) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
 
 
 def _hand_contacts(env: Any) -> NDArray[np.float64]:
-    """Returns where the palms touch MIMo, (n, 3), world, m."""
+    """Returns the points at which the palms touch MIMo, (n, 3), world, m."""
     contacts = env.data.contact
     hands, own = [*env.right_hand_geoms, *env.left_hand_geoms], env.mimo_geoms
     first, second = np.asarray(contacts.geom1), np.asarray(contacts.geom2)

@@ -35,7 +35,7 @@ MIMO_IDS: dict[str, tuple[str, int | None]] = {
 
 
 def _forwarded(self: gym.Wrapper[Any, Any, Any, Any], name: str) -> Any:
-    """Returns an attribute of what is wrapped, if that is one of MIMo's environments in the end."""
+    """Returns an attribute of the innermost wrapped environment, if that is one of MIMo's."""
     env = self.__dict__.get("env")
     if env is None or name.startswith("_") or not getattr(env.unwrapped, "_forwards_attributes", False):
         raise AttributeError(f"{type(self).__name__!r} object has no attribute {name!r}")
@@ -43,7 +43,7 @@ def _forwarded(self: gym.Wrapper[Any, Any, Any, Any], name: str) -> Any:
 
 
 def forward_attributes() -> None:
-    """Lets wrappers show the attributes of MIMo's environments, as all wrappers did before Gymnasium 1.
+    """Makes wrappers show the attributes of MIMo's environments, as all wrappers did before Gymnasium 1.
 
     Scripts for the kit say ``env.touch`` and, in wrappers of their own, ``self.model``. Other environments are as before.
     """

@@ -96,7 +96,7 @@ class MujocoRenderer:
         raise ValueError(f"render_mode: {render_mode!r} does not exist; there are human, rgb_array and depth_array")
 
     def _show(self, camera: str | None) -> None:
-        """Shows the present in a window, and waits until it is time for the next step."""
+        """Shows the current state in a window, and waits until it is time for the next step."""
         core = self._core
         if self._window is None:
             self._window = Window("MIMo", core.engine, (core.width, core.height), camera)

@@ -1,4 +1,4 @@
-"""What scripts replace of the stand-ins for MIMo's classes: in a subclass, or on one instance."""
+"""The parts of the stand-ins for MIMo's classes that scripts replace, in a subclass or on one instance."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ class Replaceable:
         refuse_uncalled(cls, cls._uncalled, cls._instead)
 
     def _made(self) -> None:
-        """Ends the construction: what is assigned from now on is a script's own."""
+        """Ends the construction: later assignments are a script's own."""
         self.__dict__["_parts_of_mimo"] = frozenset(name for name in vars(self) if name[0] != "_") - self._state
         self.__dict__["_changed"] = set()
 
@@ -61,5 +61,5 @@ class Replaceable:
             self._taken_over()
 
     def _taken_over(self) -> None:
-        """Takes note that a script has replaced something."""
+        """Records that a script has replaced something."""
         self.env._reconsider()

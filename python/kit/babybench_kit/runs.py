@@ -24,7 +24,7 @@ ENVS = {"none": "BabyBench", "self_touch": "BabyBench-SelfTouch", "hand_regard":
 
 
 def make_dir(dir_name: str | os.PathLike[str]) -> None:
-    """Makes a folder, if it is not there."""
+    """Makes a folder, if it does not exist."""
     Path(dir_name).mkdir(parents=True, exist_ok=True)
 
 
@@ -122,9 +122,9 @@ def make_env(config: Mapping[str, Any] | None = None, training: bool = True) -> 
 
 
 def _own(save_dir: str | os.PathLike[str]) -> _native.Folder | None:
-    """Takes possession of the folder of a run, and warns where the logs of two runs would mix.
+    """Claims the folder of a run, and warns if the logs of two runs would mix.
 
-    The kit goes on without a word, so that these are warnings where the command line refuses.
+    The kit continues without a message, so these are warnings where the command line refuses.
     """
     log = Path(save_dir) / "logs" / "training.pkl"
     try:

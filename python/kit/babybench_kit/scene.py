@@ -1,4 +1,4 @@
-"""Scenes as files: what a ``scene.xml`` is made of, and where the assets are that it includes."""
+"""Scenes as files: the contents of a ``scene.xml``, and the location of the assets that it includes."""
 
 from __future__ import annotations
 
@@ -81,7 +81,7 @@ def _numbers(text: str) -> list[float]:
 
 
 def _place(path: Path, text: str, scene: str) -> dict[str, list[float]] | None:
-    """Returns where MIMo is put, if not at the scene's own place."""
+    """Returns MIMo's place, if it is not the scene's own."""
     root = _ROOT.search(text)
     if root is None:
         raise SceneError(UNSERVED.format(path=path, what="it has no body mimo_location"))
@@ -110,7 +110,7 @@ def _complete(path: Path, text: str) -> Scene:
 
 
 def read_scene(path: Path) -> Scene:
-    """Reads what a ``scene.xml`` is made of.
+    """Reads the contents of a ``scene.xml``.
 
     Raises:
         FileNotFoundError: There is no such file.
@@ -147,7 +147,7 @@ def read_scene(path: Path) -> Scene:
 
 
 def read_any_scene(path: Path) -> Scene:
-    """Reads what a document is made of, which may be any with MIMo.
+    """Reads the contents of any document with MIMo.
 
     Raises:
         FileNotFoundError: There is no such file.

@@ -251,7 +251,7 @@ class SimpleVision(Vision):
         self._outputs, self._shown = outputs, self._core.observed
 
     def _seen(self, picture: NDArray[np.uint8], camera: str) -> NDArray[np.uint8]:
-        """Returns what is seen of a camera's picture: all of it."""
+        """Returns the visible part of a camera's picture: all of it."""
         return picture
 
     def get_vision_obs(self) -> dict[str, NDArray[np.uint8]]:

@@ -87,7 +87,7 @@ class SensingEnv(gym.Env):  # type: ignore[type-arg,unused-ignore]
             self._reconsider()
 
     def _reconsider(self) -> None:
-        """Takes note that a script has replaced a part or a method of this environment."""
+        """Records that a script has replaced a part or a method of this environment."""
         if "_share" in self.__dict__:
             self.__dict__["_share"] = self._share_of_the_script()
 
@@ -96,7 +96,7 @@ class SensingEnv(gym.Env):  # type: ignore[type-arg,unused-ignore]
         raise NotImplementedError
 
     def _observes_plainly(self) -> bool:
-        """Tells whether the observation is the engine's, with nothing replaced."""
+        """Returns whether the observation is the engine's, with nothing replaced."""
         known = (SimpleProprioception, TrimeshTouch, SimpleVision, SimpleVestibular, type(None))
         senses = (self.proprioception, self.touch, self.vision, self.vestibular)
         components = set((self.proprio_params or {}).get("components", ()))
@@ -121,12 +121,12 @@ class SensingEnv(gym.Env):  # type: ignore[type-arg,unused-ignore]
         return self.proprioception.get_proprioception_obs()
 
     def get_touch_obs(self) -> NDArray[np.float32]:
-        """Returns what is felt at present, (sensors, 3), N."""
+        """Returns the current touch forces, (sensors, 3), N."""
         assert self.touch is not None
         return self.touch.get_touch_obs()
 
     def get_vision_obs(self) -> dict[str, NDArray[np.uint8]]:
-        """Returns what is seen at present, by camera."""
+        """Returns the current pictures, by camera."""
         assert self.vision is not None
         return self.vision.get_vision_obs()
 
@@ -140,7 +140,7 @@ class SensingEnv(gym.Env):  # type: ignore[type-arg,unused-ignore]
         return self._delayed_observation(self._sensed())
 
     def _delayed_observation(self, observation: Observation) -> Observation:
-        """Returns the observation that arrives when another one is made: the same, but in MIMo 3."""
+        """Returns the observation that arrives when another one is made: the same one, except in MIMo 3."""
         return observation
 
     def _sensed(self) -> Observation:

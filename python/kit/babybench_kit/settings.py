@@ -64,7 +64,7 @@ def _touch(params: Mapping[str, Any]) -> dict[str, Any] | None:
 
 
 def _own_touch(params: Mapping[str, Any]) -> tuple[dict[str, Any], list[tuple[str, float]]]:
-    """Returns the keys of a configuration and the distances between sensors of touch parameters, whatever they are."""
+    """Returns the keys of a configuration, and any distances between sensors, of touch parameters."""
     keys = {**_names(params), **{f"touch_{part}": True for part in PARTS}, "touch_scale": 1.0}
     return keys, [(str(body), float(scale)) for body, scale in params["scales"].items()]
 
@@ -97,7 +97,7 @@ def _actuators(keys: dict[str, Any], scene: Scene) -> None:
 
 @dataclass
 class Settings:
-    """What the engine needs of the arguments of MIMo's constructor."""
+    """The part of MIMo's constructor arguments that the engine needs."""
 
     config: dict[str, Any]
     """The complete configuration."""
@@ -118,7 +118,7 @@ def engine_settings(
     actuation: str,
     age: float | None = None,
 ) -> Settings:
-    """Returns what the engine needs of the arguments of MIMo's constructor."""
+    """Returns the part of MIMo's constructor arguments that the engine needs."""
     keys = {"compat": "reference", **known(config)}
     keys.update(_FORGOTTEN)
     keys.update(frame_skip=frame_skip, render_size=size, actuation_model=actuation)

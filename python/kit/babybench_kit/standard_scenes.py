@@ -63,7 +63,7 @@ def _toy(name: str, pos: str, turn: float, geom: str) -> str:
 
 
 def _showroom() -> tuple[str, str]:
-    """Returns the toys and the room of the showroom, and what they are made of."""
+    """Returns the toys and the room of the showroom, and their assets."""
     bodies = [_toy(n, p, a, f'class="scene" type="box" material="{c}" size="{s} {s} {s}"') for n, p, a, c, s in _CUBES]
     bodies += [_toy(n, p, 0, f'class="scene:bouncy" type="sphere" material="{c}" size="{s}"') for n, p, c, s in _BALLS]
     bodies += [
@@ -163,7 +163,7 @@ def _hold_joints(root: ElementTree.Element) -> None:
 
 
 def _dull_floor(root: ElementTree.Element) -> None:
-    """Takes the lamp overhead and the reflections of the floor away: the showroom has lamps of its own."""
+    """Removes the lamp overhead and the reflections of the floor: the showroom has lamps of its own."""
     world = next(world for world in root.iter("worldbody") if world.find("light") is not None)
     for lamp in world.findall("light")[:1]:
         world.remove(lamp)
@@ -216,7 +216,7 @@ def _parts(folder: Path, version: str) -> dict[str, ElementTree.Element]:
 
 
 def _drop_chest(root: ElementTree.Element) -> None:
-    """Takes motors, sense and contact rule of the chest away, which the static test of muscles does not have."""
+    """Removes motors, sense and contact rule of the chest, which the static test of muscles does not have."""
     for parent in list(root.iter()):
         for child in list(parent):
             named = child.get("name", "").startswith(("act:chest_", "proprio:chest"))
@@ -225,7 +225,7 @@ def _drop_chest(root: ElementTree.Element) -> None:
 
 
 def write_scenes(folder: Path, version: int = 2) -> None:
-    """Writes all scenes with a version of MIMo into a folder that has the library's documents, unless they are there."""
+    """Writes all scenes with a version of MIMo into a folder that has the library's documents, unless they exist."""
     mark = folder / "scenes.complete"
     if mark.is_file():
         return
@@ -254,7 +254,7 @@ def write_scenes(folder: Path, version: int = 2) -> None:
 
 
 def _put(path: Path, root: ElementTree.Element) -> None:
-    """Replaces a file as a whole, as another process may read it."""
+    """Replaces a file as a whole, because another process may be reading it."""
     part = path.with_name(f"{path.name}.{os.getpid()}")
     ElementTree.ElementTree(root).write(part, encoding="utf-8")
     part.replace(path)

@@ -1,4 +1,4 @@
-"""Modules that stand in for others where those are not installed: MIMo's packages, and MuJoCo's bindings.
+"""Stand-ins for modules that are not installed: MIMo's packages, and MuJoCo's bindings.
 
 A stand-in is a single file at the top of ``site-packages``. A folder of the same name wins over it, so that installing the
 real package neither overwrites it nor is shadowed by it, in whatever order. :mod:`babybench_kit.swap` decides who serves.
@@ -44,7 +44,7 @@ def own(name: str) -> ModuleSpec | None:
 
 
 def serve(name: str) -> None:
-    """Puts the real module of a name into the place of its stand-in, or else the tree that stands in for it."""
+    """Replaces a stand-in by the real module of its name, or else by the tree that stands in for it."""
     if name == "mujoco":
         spec = None if os.environ.get(MUJOCO) == "off" else real(name)
         if spec is None:

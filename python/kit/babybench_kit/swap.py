@@ -1,4 +1,4 @@
-"""Who serves ``mimoEnv`` and its siblings: this package or an installed MIMo. Small, as every Python that starts may import it.
+"""Decides whether this package or an installed MIMo provides ``mimoEnv``. Small, as every Python may import it.
 
 ``BABYBENCH_MIMO=babybench`` takes this package, ``BABYBENCH_MIMO=original`` takes MIMo. Without it this package serves where it
 was imported before ``mimoEnv``, or where MIMo is not there; where MIMo serves all the same, a warning says so.
@@ -32,12 +32,12 @@ _told = False
 
 
 def is_own(module: Any) -> bool:
-    """Tells whether a module of MIMo's name is this package's."""
+    """Returns whether a module of MIMo's name is this package's."""
     return (getattr(module, "__file__", None) or "").startswith(_TREES)
 
 
 def chosen(claimed: bool) -> bool:
-    """Tells whether this package serves: by the variable, or else as ``claimed`` says.
+    """Returns whether this package serves: by the variable, or else as ``claimed`` says.
 
     Raises:
         ImportError: The variable has a value that means nothing.
@@ -49,7 +49,7 @@ def chosen(claimed: bool) -> bool:
 
 
 def tell(name: str, folder: str | None) -> None:
-    """Warns once that MIMo serves, unless it was asked for."""
+    """Warns once that an installed MIMo is used, unless the user requested it."""
     global _told
     if _told or os.environ.get(CHOICE) == "original":
         return
@@ -60,7 +60,7 @@ def tell(name: str, folder: str | None) -> None:
 
 
 class Swap:
-    """Finds the modules of MIMo's names before anybody else does.
+    """Finds the modules of MIMo's names before any other finder does.
 
     Attributes:
         claimed: Whether this package was imported before any of them.
@@ -69,7 +69,7 @@ class Swap:
     claimed = False
 
     def find_spec(self, name: str, path: Any = None, target: Any = None) -> ModuleSpec | None:
-        """Returns the module of whoever serves; nothing leaves the search to others."""
+        """Returns the module of the chosen package; ``None`` leaves the search to other finders."""
         return find(name) if name in MIMO else None
 
 
@@ -77,11 +77,11 @@ _swap = Swap()
 
 
 def find(name: str) -> ModuleSpec | None:
-    """Returns one of MIMo's modules, this package's or MIMo's own; nothing where MIMo shall serve and is not there."""
+    """Returns one of MIMo's modules, this package's or MIMo's own; ``None`` if MIMo is selected but not installed."""
     from babybench_kit import standin
 
     present = [sys.modules[other] for other in MIMO if other in sys.modules]
-    # whoever came first serves all: modules of both would not know each other's classes
+    # the package that came first serves all: modules of both would not know each other's classes
     if is_own(present[0]) if present else chosen(_swap.claimed):
         return standin.own(name)
     real = standin.real(name)
@@ -91,13 +91,13 @@ def find(name: str) -> ModuleSpec | None:
 
 
 def watch() -> None:
-    """Looks out for imports of MIMo's modules from now on."""
+    """Watches for imports of MIMo's modules from now on."""
     if _swap not in sys.meta_path:
         sys.meta_path.insert(0, _swap)
 
 
 def claim() -> None:
-    """Takes note that this package was imported; it serves from now on, unless MIMo does already."""
+    """Records that this package was imported; it serves from now on, unless MIMo already does."""
     _swap.claimed = True
     watch()
     for name in MIMO:

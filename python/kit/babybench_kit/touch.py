@@ -106,7 +106,7 @@ class TrimeshTouch(Touch):
                 )
 
     def _feels_as_the_engine(self, bodies: int) -> bool:
-        """Tells whether no step from a contact to the output is a subclass's own, or another one than the engine's."""
+        """Returns whether no step from a contact to the output is a subclass's own, or another one than the engine's."""
         config = self._core.config
         return (
             len(self.sensor_scales) == bodies
@@ -122,7 +122,7 @@ class TrimeshTouch(Touch):
         return self._share is Share.NOTHING
 
     def _taken_over(self) -> None:
-        """Computes in Python from now on, as a script has replaced a step."""
+        """Computes in Python from now on, because a script has replaced a step."""
         self.__dict__["_of_script"] = {}
         if "_parts_of_mimo" not in self.__dict__ or self._share is not Share.NOTHING:
             return
@@ -141,7 +141,7 @@ class TrimeshTouch(Touch):
         return list(self.meshes)
 
     def has_sensors(self, body_id: int) -> bool:
-        """Tells whether a body has sensors."""
+        """Returns whether a body has sensors."""
         return body_id in self.sensor_positions
 
     def get_sensor_count(self, body_id: int) -> int:
@@ -220,7 +220,7 @@ class TrimeshTouch(Touch):
         return self._core.course.moment.felt and self._share is Share.NOTHING
 
     def _invert(self, contacts: dict[str, NDArray[Any]]) -> None:
-        """Inverts the normals that are inverted when everything is felt once."""
+        """Inverts the normals that one pass of feeling inverts."""
         active = (abs(contacts["force"][:, 0]) >= _LEAST_FORCE) & (contacts["dist"] < 0)
         contacts["frame"][active & self._sensed[contacts["geom1"]], :3] *= -1
 
@@ -320,7 +320,7 @@ class TrimeshTouch(Touch):
         return self.flatten_sensor_dict(self.sensor_outputs)
 
     def _own(self, what: str) -> bool:
-        """Tells whether a script has replaced a method, or ``spread``: one of those that spread a force."""
+        """Returns whether a script has replaced a method, or ``spread``: one of those that spread a force."""
         known: dict[str, bool] = self.__dict__.setdefault("_of_script", {})
         found = known.get(what)
         if found is None:

@@ -1,4 +1,4 @@
-"""The interface of touch, and what its attributes are made of."""
+"""The interface of touch, and the types of its attributes."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ class Spacings(dict[int, float]):
     """Distances between the sensors of each body, by its id, m; a script may write to them."""
 
     def __init__(self, spacings: dict[int, float], written: Callable[[], None]) -> None:
-        """Takes the distances, and what is called after a change."""
+        """Creates the dictionary from distances and a function that is called after a change."""
         super().__init__(spacings)
         self._written = written
 
@@ -110,7 +110,7 @@ class Touch(Replaceable):
 
 
 class DiscreteTouch(Touch):
-    """MIMo's touch by geoms; the kit's own does not run, so nobody has it."""
+    """MIMo's touch by geoms. The kit's own does not run, so no program uses it."""
 
     def __init__(self, env: SensingEnv, touch_params: dict[str, Any]) -> None:
         """Refuses.

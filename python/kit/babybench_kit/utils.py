@@ -93,7 +93,7 @@ def get_child_bodies(sim_model: Any, body_id: int) -> list[int]:
 
 
 def get_sensor_addr(mujoco_model: Any, sensor_id: int) -> range:
-    """Returns where the values of a sensor stand in ``sensordata``."""
+    """Returns the slice of a sensor's values in ``sensordata``."""
     first = mujoco_model.sensor_adr[sensor_id]
     return range(first, first + mujoco_model.sensor_dim[sensor_id])
 
@@ -108,13 +108,13 @@ def get_data_for_sensor(mujoco_model: Any, mujoco_data: Any, sensor_name: str) -
 
 
 def get_joint_qpos_addr(mujoco_model: Any, joint_id: int) -> range:
-    """Returns where a joint stands in ``qpos``."""
+    """Returns the indices of a joint in ``qpos``."""
     first = mujoco_model.jnt_qposadr[joint_id]
     return range(first, first + MUJOCO_JOINT_SIZES[int(mujoco_model.jnt_type[joint_id])])
 
 
 def get_joint_qvel_addr(mujoco_model: Any, joint_id: int) -> range:
-    """Returns where a joint stands in ``qvel``."""
+    """Returns the indices of a joint in ``qvel``."""
     first = mujoco_model.jnt_dofadr[joint_id]
     return range(first, first + MUJOCO_DOF_SIZES[int(mujoco_model.jnt_type[joint_id])])
 
@@ -137,7 +137,7 @@ def _scalar(value: Any) -> int:
 
 
 def lock_joint(mujoco_model: Any, joint_name: str, joint_angle: float | None = None) -> None:
-    """Locks a joint from the next reset on: at an angle, rad, or where it is set to be held unless something else holds it."""
+    """Locks a joint from the next reset on: at an angle, rad, or at the angle set for it, unless something else holds it."""
     own = mujoco_model.equality(joint_name)
     if joint_angle is not None:
         set_joint_locking_angle(mujoco_model, joint_name, joint_angle, own.id)

@@ -20,7 +20,7 @@ class ViewRenderer:
     """
 
     def __init__(self, model: Any, height: int, width: int) -> None:
-        """Takes the size of pictures, pixels."""
+        """Creates a renderer for pictures of a size, pixels."""
         self.model, self.height, self.width = model, height, width
         self._data: Any = None
         self._camera: Any = None
@@ -95,7 +95,7 @@ class ViewRenderer:
         return finished(picture, self._what, out, self.model.ngeom)
 
     def close(self) -> None:
-        """Gives the picture's state back; :meth:`update_scene` takes another."""
+        """Releases the picture's state; :meth:`update_scene` takes another."""
         self._data = None
 
     def __enter__(self) -> ViewRenderer:

@@ -1,4 +1,4 @@
-"""What stands for MuJoCo's ``MjModel`` and ``MjData`` where MuJoCo is not installed.
+"""Stand-ins for MuJoCo's ``MjModel`` and ``MjData`` where MuJoCo is not installed.
 
 Names, shapes, number types and units are MuJoCo's. The arrays of a state show the present after every step; ``qpos``, ``qvel``,
 ``ctrl``, ``qfrc_applied``, ``xfrc_applied`` and those of mocap bodies can be written. Of a model ``eq_active0`` and ``eq_data``
@@ -75,7 +75,7 @@ class Options:
     """The options of a model, ``model.opt``."""
 
     def __init__(self, values: dict[str, Any]) -> None:
-        """Takes the values over."""
+        """Copies the values."""
         self.__dict__.update(values)
 
     def __setattr__(self, name: str, value: Any) -> None:
@@ -219,7 +219,7 @@ class DataView(_Named):
 
     @property
     def _own(self) -> Any:
-        """Returns what the functions of MuJoCo advance."""
+        """Returns the engine that the functions of MuJoCo advance."""
         return self._sync
 
     @property

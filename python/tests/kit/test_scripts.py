@@ -46,12 +46,12 @@ def learner(python: str) -> tuple[object, ...]:
 
 
 def has(python: str, modules: tuple[str, ...]) -> bool:
-    """Tells whether this Python has modules; the kit's has."""
+    """Returns whether this Python has modules; the kit's has."""
     return python != sys.executable or all(importlib.util.find_spec(module) for module in modules)
 
 
 def newer_matplotlib() -> bool:
-    """Tells whether matplotlib has lost what the kit's plot of touch calls: since 3.10."""
+    """Returns whether matplotlib has lost what the kit's plot of touch calls: since 3.10."""
     major, minor = importlib.metadata.version("matplotlib").split(".")[:2]
     return (int(major), int(minor)) >= (3, 10)
 

@@ -50,7 +50,8 @@ pub struct SettledScene {
 }
 
 impl SettledScene {
-    /// Lets a task settle the scene, with the locks of the configuration. Under `compat: reference` locks apply from the first reset on.
+    /// Settles the scene as the task does, with the locks of the configuration. Under `compat: reference` locks apply from the first
+    /// reset on.
     pub fn new(
         config: &Config,
         task: &dyn Task,

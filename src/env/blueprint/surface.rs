@@ -66,8 +66,8 @@ impl Blueprint {
         }
     }
 
-    /// Returns the GPU renderer that environments of this blueprint share, whatever renderer the configuration asks for. It is opened on
-    /// first use.
+    /// Returns the GPU renderer that environments of this blueprint share, even if the configuration asks for another renderer. It is
+    /// opened on first use.
     ///
     /// # Errors
     /// Textures that cannot be read, a missing graphics adapter, a build without `wgpu`, or a browser.

@@ -110,8 +110,8 @@ fn difference(name: &str, then: Option<&&str>, now: Option<&&str>) -> String {
     format!("{} was {}, but here it is {}", quoted(name), value(then), value(now))
 }
 
-/// Computes a fingerprint of what decides the meaning of a snapshot: names, sizes and masses of the scene, all of a scene that the
-/// user wrote or added to, and the keys of the configuration with their values.
+/// Computes a fingerprint of everything that gives a snapshot its meaning: names, sizes and masses of the scene, the whole scene
+/// if the user wrote it or added to it, and the keys of the configuration with their values.
 fn fingerprint(model: &Model, config: &Config, keys: &str) -> u64 {
     let mut bytes = Vec::new();
     for names in [

@@ -34,7 +34,7 @@ pub(super) const NAMES: &[&str] = &[
 const PHASES: usize = 3;
 /// The phase in which the mobile is tied.
 const REINFORCEMENT: usize = 1;
-/// The limbs, one of which has the ribbon.
+/// The limbs to one of which the ribbon is tied.
 const LIMBS: usize = Limb::ALL.len();
 /// A movement begins when the end of a limb is faster than this, in the frame of the hip, m/s.
 const BEGINS: f64 = 0.2;

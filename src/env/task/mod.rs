@@ -32,7 +32,7 @@ use crate::mimo::{Version, scene_xml};
 use crate::model::Model;
 use crate::physics::State;
 
-/// How many numbers a task hands out in each step.
+/// The number of values that a task returns in each step.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct TaskSizes {
     /// Length of the achieved and of the desired goal.
@@ -113,7 +113,7 @@ pub trait Task: CloneTask + Debug + Send + Sync {
     /// Returns the name, for errors and reports.
     fn name(&self) -> &str;
 
-    /// Returns the source of its scene; by default, the one that the keys of the configuration ask for.
+    /// Returns the source of its scene; by default, the one that the configuration selects.
     fn document(&self, config: &Config) -> TaskDocument {
         TaskDocument::of(config)
     }
@@ -128,7 +128,7 @@ pub trait Task: CloneTask + Debug + Send + Sync {
         Ok(TaskSizes::default())
     }
 
-    /// Brings a new scene to the state from which episodes start. Joints locked through [`TaskScene::lock`] stay locked at every reset.
+    /// Moves a new scene to the state from which episodes start. Joints locked through [`TaskScene::lock`] stay locked at every reset.
     ///
     /// By default 100 physics steps pass with the action 0, from `qpos0`.
     ///
@@ -138,7 +138,7 @@ pub trait Task: CloneTask + Debug + Send + Sync {
         scene.settle()
     }
 
-    /// Brings the scene to the start of an episode, by default the settled state.
+    /// Moves the scene to the start of an episode, by default the settled state.
     ///
     /// # Errors
     /// The simulation diverged.
@@ -184,8 +184,8 @@ pub trait Task: CloneTask + Debug + Send + Sync {
         let _ = (view, desired, achieved, terms);
     }
 
-    /// Returns reward, success and failure as a function of goals and terms, so that programs can compute the reward of another goal. By
-    /// default there is no reward and no end.
+    /// Returns reward, success and failure as a function of goals and terms. Programs can therefore compute the reward of another goal.
+    /// By default the reward is 0 and episodes do not end.
     fn judge(&self, goal: Goal<'_>) -> StepReward {
         let _ = goal;
         StepReward::default()

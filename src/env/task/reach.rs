@@ -12,7 +12,7 @@ use crate::mimo::CHEST;
 use crate::model::Model;
 
 const PURPOSE: &str = "behavior reach";
-/// How far the ball may lie from its place at the start of an episode, m: from, to.
+/// Range of the ball's offset from its place at the start of an episode, by axis, m.
 const BALL: [[f64; 2]; 3] = [[-0.1, 0.0], [-0.2, 0.1], [-0.1, 0.0]];
 /// Displacement of the ball that counts as touched, m.
 const MOVED: f64 = 0.01;

@@ -37,7 +37,7 @@ pub struct TaskScene<'a> {
     /// The generator of the environment's random choices.
     pub rng: &'a mut NumpyRng,
     pub(crate) engine: EngineSource<'a>,
-    /// Where calls of the engine are noted, if they are.
+    /// The record of engine calls, if they are recorded.
     pub(crate) last_call: Option<&'a mut LastEngineCall>,
     /// Parameters after a reset.
     pub(crate) base: &'a mut Shared<Params>,
@@ -203,7 +203,7 @@ impl<'a> TaskScene<'a> {
         self.advance(steps)
     }
 
-    /// Gives an action to the actuators, through the delay before them.
+    /// Passes an action to the actuators, through the delay before them.
     pub(crate) fn set_action(&mut self, action: &[f32], passed: ActionTiming) {
         let action = match (&mut self.delay, passed) {
             (Some(delay), ActionTiming::InStep) => delay.pass(action, self.rng),
@@ -224,8 +224,8 @@ impl<'a> TaskScene<'a> {
         }
     }
 
-    /// Makes physics steps, before each of which but the first the actuators are updated. Those of MIMo 3 are updated before the first,
-    /// too, under `compat: reference`.
+    /// Makes physics steps, and updates the actuators before each one except the first. Under `compat: reference`, MIMo 3's actuators
+    /// are updated before the first one, too.
     pub(crate) fn advance(&mut self, steps: u32) -> Result<(), EnvError> {
         self.watched_advance(steps, &mut |_| {})
     }
@@ -299,7 +299,7 @@ impl<'a> TaskScene<'a> {
         Ok(())
     }
 
-    /// Lets a scene settle for 100 steps from `qpos0` with the action 0. Muscles keep their initial pull throughout. A MIMo with an age
+    /// Settles a scene for 100 steps from `qpos0` with the action 0. Muscles keep their initial pull throughout. A MIMo with an age
     /// starts in the posture in which the scene holds him: with other proportions than the original's, his legs would sink too deep into
     /// the floor on their way there.
     ///

@@ -24,7 +24,8 @@ pub(super) fn random_start(
     Ok(())
 }
 
-/// Gives the action 0 to the actuators and makes physics steps. Under `compat: reference` actuators are not updated between them.
+/// Passes the action 0 to the actuators and makes physics steps. Under `compat: reference` actuators are not updated between
+/// them.
 pub(super) fn relax(scene: &mut TaskScene<'_>, steps: u32) -> Result<(), EnvError> {
     if scene.config.compat == Compat::Reference {
         return scene.rest(steps);

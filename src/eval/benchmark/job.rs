@@ -58,7 +58,7 @@ pub struct RunResult {
     pub episodes: u64,
     /// The score of all episodes; none for tasks.
     pub score: Option<f64>,
-    /// The scores after given numbers of steps, by that number: of the episodes that had ended by then.
+    /// Scores of the episodes that had ended after each given number of steps, by that number.
     pub score_at: BTreeMap<u64, f64>,
     /// Parts that both hands touch in an episode, mean.
     pub parts_per_episode: Option<f64>,
@@ -74,7 +74,7 @@ pub struct RunResult {
     pub evaluated_parts: Option<f64>,
     /// The measures of the recorded episodes.
     pub measures: Option<Measures>,
-    /// Steps per second of this run, in one thread, beside the machine's other work.
+    /// Steps per second of this run, in one thread, while the machine did other work too.
     pub steps_per_second: f64,
 }
 

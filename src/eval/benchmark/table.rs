@@ -20,7 +20,7 @@ pub struct BenchmarkRow {
     pub age: Option<f64>,
     /// The policy.
     pub policy: String,
-    /// The means of all that was measured, by the name of the metric.
+    /// The mean of each metric, by its name.
     pub metrics: BTreeMap<String, ConfidenceInterval>,
 }
 

@@ -56,8 +56,8 @@ impl RoomFilm {
         })
     }
 
-    /// Sets the number of frames per second, [`DEFAULT_FPS`] if not called; as many as there are steps in a second of
-    /// the scene show it in real time.
+    /// Sets the number of frames per second, [`DEFAULT_FPS`] by default. The number of steps per simulated second shows the scene in
+    /// real time.
     #[must_use]
     pub fn with_fps(mut self, fps: u32) -> Self {
         self.fps = fps;

@@ -20,7 +20,7 @@ const WITHIN: [[&str; 2]; 4] = [
 /// Joints whose two sides are compared.
 const BETWEEN: [&str; 4] = ["hip1", "knee", "shoulder_ad_ab", "elbow"];
 
-/// How two series go together.
+/// The coupling of two series.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Coupling {
     /// Correlation at no lag, -1 to 1.

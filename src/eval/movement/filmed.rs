@@ -1,4 +1,4 @@
-//! What a camera keeps of a path: frames at its rate, with errors.
+//! The part of a path that a camera captures: frames at its rate, with errors.
 
 use crate::math::Vec3;
 use crate::spaces::NumpyRng;

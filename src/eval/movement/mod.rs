@@ -57,7 +57,7 @@ impl MovementFrame {
     }
 }
 
-/// How movements are seen.
+/// The way in which movements are observed.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct MovementOptions {
@@ -156,7 +156,7 @@ pub struct Movement {
     pub episodes: u64,
     /// Simulated time, of all episodes, s.
     pub seconds: f64,
-    /// How they were seen; the window is the one that was used.
+    /// The way in which they were observed; the window is the one that was used.
     pub options: MovementOptions,
     /// The measures by name, in the units that [`MOVEMENT_MEASURES`] has. Those that are undefined, such as the exponent of a limb at
     /// rest, are left out.

@@ -1,4 +1,4 @@
-//! What moved in an episode: ends of limbs, segments of the body, joints.
+//! The movements of an episode: ends of limbs, segments of the body, joints.
 
 use super::LIMBS;
 use crate::env::{Env, EnvError};
@@ -28,7 +28,7 @@ pub(super) struct BodyPaths {
     pub hip: [Vec<Vec3>; 4],
     /// Left of the hip, at rest, as the sign of its y axis.
     pub left: f64,
-    /// How far the front of each segment looks up: 1 supine, -1 prone.
+    /// Upward component of the direction in which the front of each segment faces: 1 supine, -1 prone.
     pub front: [Vec<f64>; 5],
     /// Names of MIMo's joints, without prefix.
     pub joints: Vec<String>,

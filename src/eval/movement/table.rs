@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-/// What a measure of movement is.
+/// The definition of a measure of movement.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub struct MeasureDescription {
     /// Its name. `LIMB` stands for right_hand, left_hand, right_foot and left_foot; `SIDES` for hands and feet; `PAIR` for pairs of

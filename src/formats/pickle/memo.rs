@@ -2,7 +2,7 @@
 
 use crate::limits::Limits;
 
-/// The length of opcodes with what follows them, if that is always the same and nothing is recalled; otherwise 0.
+/// The length of each opcode with its argument, if that is fixed and the opcode recalls nothing; otherwise 0.
 const PLAIN: [u8; 256] = {
     let mut lengths = [1; 256];
     let others = b".hj\x8aC\x8cXB\x8d\x8e\x96c";

@@ -34,21 +34,21 @@ fn keep<T>(spare: &mut Vec<Vec<T>>, mut list: Vec<T>) {
 pub(super) struct PickleMachine<'a> {
     pub bytes: &'a [u8],
     pub at: usize,
-    /// Where the current opcode stands.
+    /// Offset of the current opcode.
     pub op: usize,
     pub stack: Vec<StackItem>,
     pub marks: Vec<usize>,
     pub objects: Vec<PickleObject<'a>>,
     pub limits: &'a Limits,
-    /// Entries of the memo so far; those that are recalled, by their place.
+    /// Entries of the memo so far; recalled ones by their place.
     pub memo_length: usize,
     memo: BTreeMap<usize, StackItem>,
     recalled: Vec<bool>,
     /// Objects in the memo, which may be referred to more than once, by their place.
     shared: Vec<bool>,
-    /// Objects that are no longer used, whose places are.
+    /// Places of objects that are no longer used; new objects reuse them.
     free: Vec<usize>,
-    /// Room of lists and dictionaries that are no longer used.
+    /// Memory of lists and dictionaries that are no longer used.
     spare: SpareLists,
     /// Objects that are yet to be released.
     releasing: Vec<usize>,
@@ -137,7 +137,7 @@ impl<'a> PickleMachine<'a> {
         self.stack.push(StackItem::Object(place));
     }
 
-    /// Takes the items so far of the list at the bottom of the stack, if the pickle is a list.
+    /// Removes and returns the items so far of the list at the bottom of the stack, if the pickle is a list.
     #[inline]
     pub fn take_records(&mut self) -> Option<Vec<StackItem>> {
         match (&self.stack[..], self.objects.first_mut()) {
@@ -269,7 +269,7 @@ impl<'a> PickleMachine<'a> {
         Ok((mark, below))
     }
 
-    /// Returns the top value and leaves it there.
+    /// Returns the top value without removing it.
     pub fn top(&mut self) -> Result<StackItem, PickleError> {
         let item = self.pop()?;
         self.stack.push(item);
@@ -305,7 +305,7 @@ impl<'a> PickleMachine<'a> {
         Ok(())
     }
 
-    /// Takes numbers off the budget.
+    /// Deducts numbers from the budget.
     #[inline]
     pub fn spend(&mut self, numbers: usize) -> OpcodeResult {
         let (what, limit) = ("numbers", self.limits.pickle_numbers);

@@ -114,7 +114,7 @@ pub(super) fn check(text: &str) -> Result<(), CustomSceneError> {
     }
 }
 
-/// Lists the top elements by position and name, as far as the text is XML.
+/// Lists the top elements by position and name, up to the first text that is not XML.
 fn top_elements(text: &str) -> Vec<(usize, String)> {
     let mut reader = Reader::from_str(text);
     let (mut depth, mut found) = (0_usize, Vec::new());

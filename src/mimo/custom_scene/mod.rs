@@ -1,6 +1,6 @@
 //! A custom scene: an MJCF document in which MIMo is included.
 //!
-//! The document is read as if it lay among the documents of the library, so that it can include them by name, beside its own files. The
+//! The document is read as if it lay among the documents of the library, so that it can include them by name, in addition to its own files. The
 //! library adds three that depend on the configuration: MIMo, his settings and his actuators ([`FILES`]).
 
 mod check;
@@ -212,7 +212,7 @@ impl<A: AssetSource> CustomScene<A> {
         }
     }
 
-    /// Returns the path of a file beside the document, as the document's path is given.
+    /// Returns the path of a file next to the document, in the form in which the document's own path was given.
     fn shown(&self, name: &str) -> String {
         match &self.own {
             DocumentSource::Given(folder) if folder.is_empty() => name.to_string(),

@@ -101,7 +101,7 @@ fn difference(model: &Model, usual: &Model) -> Option<SceneDifference> {
     in_order(model, usual).or_else(|| by_name(model, usual))
 }
 
-/// Compares what belongs to MIMo's bodies, which nothing can be added to, in the order of the ids.
+/// Compares the elements of MIMo's bodies in the order of the ids. Documents cannot add elements to these bodies.
 fn in_order(model: &Model, usual: &Model) -> Option<SceneDifference> {
     let own = |model: &Model, carriers: &[usize]| -> Vec<usize> {
         let mimo = MimoBodies::of(model);
@@ -144,7 +144,7 @@ fn in_order(model: &Model, usual: &Model) -> Option<SceneDifference> {
     None
 }
 
-/// Compares what refers to MIMo, beside which a document may have more of the kind.
+/// Compares the elements that refer to MIMo. A document may have more elements of these kinds.
 fn by_name(model: &Model, usual: &Model) -> Option<SceneDifference> {
     let missing = |part: String| Some((part, "name", "no such element".to_string(), "one".to_string()));
     for (j, name) in usual.actuator_name.iter().enumerate() {

@@ -83,7 +83,7 @@ fn element(start: &BytesStart<'_>) -> Option<BytesStart<'static>> {
     Some(out)
 }
 
-/// Lets an include refer to the second infant's file; none for what is there already.
+/// Makes an include refer to the second infant's file. Returns `Some(None)` for files that both infants share.
 fn included(start: &BytesStart<'_>) -> Option<Option<BytesStart<'static>>> {
     let attribute = start.attributes().next()?.ok()?;
     let file = &*attribute.value;

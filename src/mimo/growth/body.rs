@@ -10,7 +10,7 @@ pub(super) const SLACK: f64 = 1e-4;
 /// Height of the remaining stump of the neck, m.
 const NECK: f64 = 2e-6;
 
-/// Adds the trunk, which follows the breadth of the hip; its heights have a factor. A chest of its own has the upper body's last geom,
+/// Adds the trunk, which follows the breadth of the hip; its heights have a factor. A separate chest takes the upper body's last geom
 /// and leaves a stump of a neck there.
 pub(super) fn trunk(now: &Lengths, base: &Lengths, has_chest: bool, stretch: Stretch, out: &mut BodyShapes) {
     let h = now.hip_breadth / base.hip_breadth;

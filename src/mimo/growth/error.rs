@@ -27,7 +27,7 @@ pub enum GrowthError {
         reason: String,
     },
     /// The scene lacks a part that grows.
-    #[error("the scene's MIMo has no {what}, which `age` would change; its assets are of another MIMo")]
+    #[error("the scene's MIMo has no {what}, which `age` would change; its assets belong to another version of MIMo")]
     Missing {
         /// Kind and name of the element.
         what: String,

@@ -47,8 +47,8 @@ impl<'m> Weights<'m> {
         Some(GRAVITY * mass * norm(cross(self.state.xaxis[joint], arm)))
     }
 
-    /// Returns the weight beyond a joint times the distance of its centre from the joint, N m: the torque about the axis on which it would
-    /// be greatest. `None` without the joint.
+    /// Returns the weight beyond a joint times the distance of its centre from the joint, N m: the largest torque about any axis. `None`
+    /// if the joint does not exist.
     pub fn load(&self, joint: &str) -> Option<f64> {
         let (mass, arm) = self.beyond(self.model.joint(joint)?);
         Some(GRAVITY * mass * norm(arm))

@@ -109,7 +109,7 @@ impl Maturity {
         !self.strength.is_empty()
     }
 
-    /// Gives a document's MIMo the strength of infants, and springs by weight.
+    /// Sets the strength of infants, and springs by weight, for a document's MIMo.
     pub fn apply(&self, draft: &mut Draft, own: &[String]) {
         for joint in draft.joints() {
             if let Some(factor) = self.springs.get(joint.name) {
@@ -215,8 +215,8 @@ fn rows(
     Ok(rows)
 }
 
-/// Returns the factors on the springs and dampers of MIMo's joints: the loads of gravity over those of the original body. Joints through
-/// the centre of what they carry, those of the eyes, are left out.
+/// Returns the factors on the springs and dampers of MIMo's joints: the loads of gravity over those of the original body. The joints of
+/// the eyes are left out, because they pass through the centre of what they carry.
 fn springs(original: &Weights, body: &Weights, model: &Model) -> BTreeMap<String, f64> {
     let own = model.jnt_name.iter().filter(|name| name.starts_with(JOINT_PREFIX));
     let factor = |name: &String| {

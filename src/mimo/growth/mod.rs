@@ -56,7 +56,7 @@ pub struct Growth {
     /// Whether muscles keep their strength.
     same_muscles: bool,
     strength_age: f64,
-    /// The strength of infants and springs by weight; `None` if neither is asked for.
+    /// The strength of infants and springs by weight; `None` if the configuration requests neither.
     maturity: Option<Maturity>,
 }
 
@@ -136,7 +136,7 @@ impl Growth {
         self.age
     }
 
-    /// Gives a document's MIMo, of his original proportions, the sizes, masses and strength of this age.
+    /// Sets the sizes, masses and strength of this age for a document's MIMo with his original proportions.
     ///
     /// # Errors
     /// Parts that the document lacks.
@@ -145,7 +145,7 @@ impl Growth {
         self.sizes.resize(&self.sizes.body, draft)
     }
 
-    /// Gives actuators and joints the strength of the age.
+    /// Sets the strength of actuators and joints to that of the age.
     fn strengthen(&self, draft: &mut Draft) -> Result<(), GrowthError> {
         let own = draft.joints_below(ROOT);
         if let Some(maturity) = &self.maturity {

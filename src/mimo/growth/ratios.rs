@@ -12,7 +12,7 @@ pub(crate) const RATIO_AGES: [f64; 8] = [0.0, 1.0, 2.0, 3.0, 4.0, 6.0, 9.0, 12.0
 /// The age of the original proportions, months.
 pub(super) const GROWN: f64 = 18.0;
 
-/// What a torque is a ratio of.
+/// The reference of a ratio: a torque that the strength is relative to.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Against {
     /// The greatest torque of gravity about a joint.
@@ -28,7 +28,7 @@ pub(super) enum Against {
 /// A ratio over age.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct RatioCurve {
-    /// What it is the strength of.
+    /// The movement whose strength it is.
     pub name: &'static str,
     /// The motor whose torque has the ratio, and the direction: 0 negative, 1 positive.
     pub reference: (&'static str, usize),

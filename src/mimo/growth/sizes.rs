@@ -22,7 +22,7 @@ pub(super) struct Sizes {
 }
 
 impl Sizes {
-    /// Gives a document's MIMo the sizes, masses and places of a body.
+    /// Sets the sizes, masses and positions of a body for a document's MIMo.
     pub fn resize(&self, body: &BodyShapes, draft: &mut Draft) -> Result<(), GrowthError> {
         for geom in &body.geoms {
             for (body, _) in sides(geom.side, geom.body) {

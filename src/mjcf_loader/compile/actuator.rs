@@ -119,7 +119,7 @@ fn transmission(
 /// Returns the ranges of control and activation: as given, or `inheritrange` times the range of the joint or tendon, around its middle.
 fn ranges(context: &Context, actuator: &Actuator, range: Option<[f64; 2]>) -> Result<([f64; 2], [f64; 2]), LoadError> {
     let (law, given) = (&actuator.law, (actuator.ctrlrange, actuator.activation.range));
-    // a position servo: force = kp (control - length) - kv velocity. MuJoCo recognises it by its numbers, whatever element made it.
+    // a position servo: force = kp (control - length) - kv velocity. MuJoCo recognises it by its numbers, not by its element.
     let servo =
         law.gaintype == GainType::Fixed && law.biastype == BiasType::Affine && law.gainprm[0] == -law.biasprm[1];
     if !servo || actuator.inheritrange <= 0.0 {

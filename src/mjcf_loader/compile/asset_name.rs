@@ -3,7 +3,7 @@
 use crate::error::{ErrorKind, LoadError};
 use crate::xml::Tree;
 
-/// Returns the name of the asset at a place in the text. An asset without a name is called after its file, without directory and extension.
+/// Returns the name of the asset at a place in the text. An asset without a name is named after its file, without directory and extension.
 pub(super) fn asset_name(tree: &Tree, at: usize, name: &str, file: Option<&str>) -> Result<String, LoadError> {
     match stem(name, file) {
         "" => Err(tree.error(at, ErrorKind::MissingAttribute("name"))),

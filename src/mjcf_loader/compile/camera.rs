@@ -20,7 +20,7 @@ pub(super) fn compile_camera(
     let find = |name: &String| ids.body.find(context.tree, camera.at, "target", name);
     arrays.cam_name.push(camera.name.clone());
     arrays.cam_mode.push(camera.mode);
-    // kept whatever the mode: the distance that `trackcom` keeps is measured from it
+    // kept in every mode: the distance that `trackcom` keeps is measured from it
     arrays
         .cam_targetbodyid
         .push(camera.target.as_ref().map(find).transpose()?);
@@ -128,7 +128,7 @@ impl Camera {
         let (focal, principal) = (self.focal, self.principal);
         self.apply(e);
         let given = |name: &str| e.values().any(|(other, _)| other == name);
-        // beside pixels MuJoCo does not read lengths
+        // if pixels are given, MuJoCo does not read lengths
         if given("focalpixel") {
             self.focal = focal;
         }

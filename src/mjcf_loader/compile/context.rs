@@ -119,8 +119,8 @@ impl Context<'_> {
         }
     }
 
-    /// Returns the path in the source of a file in a folder that the document names. An included file may have it beside itself, if it is
-    /// not in the folder `probed`. The source must have it.
+    /// Returns the path in the source of a file in a folder that the document names. If it is not in the folder `probed`, it may be next
+    /// to the included file that names it. The source must have it.
     pub fn asset_path(
         &self,
         at: usize,
@@ -204,7 +204,7 @@ impl Context<'_> {
         self.tree.error(at, ErrorKind::Invalid(message))
     }
 
-    /// Tells whether a range applies; if so, checks that it is one.
+    /// Returns whether a range applies; if so, checks that it is one.
     pub fn limited(
         &self,
         at: usize,
@@ -268,7 +268,7 @@ pub(super) struct Ids {
 }
 
 impl Ids {
-    /// Collects the names of all elements. `arrays` holds the textures already, some of which are named after their files.
+    /// Collects the names of all elements. `arrays` already holds the textures, because some are named after their files.
     pub fn new(tree: &Tree, document: &TypedDocument, textures: &[Texture], arrays: &Arrays) -> Result<Ids, LoadError> {
         check_unreferenced(tree, document)?;
         let bodies = &document.bodies;

@@ -78,7 +78,7 @@ fn named(document: &TypedDocument) -> BTreeSet<String> {
     order::set(names.chain(sensed).filter(|name| !name.is_empty()).cloned())
 }
 
-/// Refuses sensors whose reference is a geom behind one that is left out, or one of these.
+/// Refuses sensors whose reference is a geom that is left out, or one after it.
 fn check_references(tree: &Tree, document: &TypedDocument) -> Result<(), LoadError> {
     let all = document.bodies.iter().flat_map(|body| &body.geoms);
     let before: Vec<&String> = all.take_while(|geom| !geom.left_out).map(|geom| &geom.name).collect();

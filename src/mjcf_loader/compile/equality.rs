@@ -42,7 +42,7 @@ struct Scope<'a> {
     context: &'a Context<'a>,
     ids: &'a Ids,
     arrays: &'a Arrays,
-    /// Where the equality is in the text.
+    /// Position of the equality in the text.
     at: usize,
 }
 
@@ -167,7 +167,7 @@ impl Scope<'_> {
 /// Returns position and orientation of a weld's relative pose; zeros if it is the pose at `qpos0`.
 fn pose_of(relpose: Option<[f64; 7]>) -> (Vec3, Quat) {
     match relpose.unwrap_or_default() {
-        // a quaternion of zeros is MuJoCo's default, and means the pose at `qpos0`, whatever the position is
+        // a quaternion of zeros is MuJoCo's default, and means the pose at `qpos0`, for any position
         [_, _, _, 0.0, 0.0, 0.0, 0.0] => ([0.0; 3], [0.0; 4]),
         [x, y, z, quat @ ..] => ([x, y, z], quat_normalize(quat)),
     }

@@ -29,7 +29,7 @@ const PLACES: [f64; 15] = [
     1429.4772912937397,
     54087.416549217705,
 ];
-/// How steep that is in the points: `x^2 (3 - x) / (1 - x)^3`.
+/// Its slopes at the points: `x^2 (3 - x) / (1 - x)^3`.
 const STRETCH: [f64; 15] = [
     5.538677720489877e-05,
     0.002080868285293228,

@@ -83,8 +83,8 @@ pub(super) fn places(context: &Context, document: &TypedDocument) -> Result<Vec<
     Ok(places)
 }
 
-/// Tells whether bodies of a document are fused. As in MuJoCo 3.3.0, none is if the document has a camera, a light, or any element of a kind
-/// that may refer to a body or to one of its elements, whatever it refers to.
+/// Returns whether bodies of a document are fused. As in MuJoCo 3.3.0, none is fused if the document has a camera, a light, or any element
+/// of a kind that can refer to a body or to an element of a body, even if it refers to something else.
 fn fuses(d: &TypedDocument) -> bool {
     let named = [
         d.skins.len(),

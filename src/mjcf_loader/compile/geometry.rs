@@ -14,7 +14,7 @@ const MAXVAL: f64 = 1e10;
 /// Below this the compiler takes lengths, volumes and eigenvalues for zero.
 pub(super) const EPS: f64 = 1e-14;
 
-/// Normalises by division; leaves vectors alone that are (nearly) zero or unit. Returns the old length, 0 if tiny.
+/// Normalises by division; (nearly) zero or unit vectors stay as they are. Returns the old length, 0 if tiny.
 pub(crate) fn normalize<const N: usize>(vector: &mut [f64; N]) -> f64 {
     let mut square = 0.0;
     for value in vector.iter() {
@@ -329,7 +329,7 @@ pub(super) fn principal(full: &[f64; 6]) -> Result<(Quat, Vec3), &'static str> {
     }
 }
 
-/// Computes principal axes and moments as [`principal`] does, whatever the moments are.
+/// Computes principal axes and moments as [`principal`] does, without checking the moments.
 pub(super) fn diagonalize(full: &[f64; 6]) -> (Quat, Vec3) {
     principal_axes(full, |mut quat| {
         normalize(&mut quat);

@@ -10,8 +10,8 @@ use crate::limits::Limits;
 use crate::mesh::HField;
 use crate::model;
 
-/// Compiles the height fields, whose files are looked up in `source`. All together have as many heights as
-/// the limits allow for elements of meshes.
+/// Compiles the height fields, whose files are looked up in `source`. Their heights count together towards the limit on
+/// elements of meshes.
 pub(super) fn compile_hfields(
     context: &Context,
     document: &TypedDocument,

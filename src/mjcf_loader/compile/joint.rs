@@ -118,7 +118,7 @@ fn compile_joint(
         .jnt_range
         .push(if limited { joint.range.map(angle) } else { joint.range });
     arrays.jnt_margin.push(joint.margin);
-    // the force on other joints is not limited, whatever the attributes say
+    // the force on other joints is not limited, even if the attributes say so
     let actfrclimited = joint.kind.nv() == 1
         && context.limited(
             joint.at,

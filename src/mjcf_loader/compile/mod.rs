@@ -39,7 +39,7 @@ use crate::math::Vec3;
 use crate::model::{Arrays, SameFrame};
 
 /// Compiles the document, except for the quantities that need dynamics. Images, meshes and heights are looked up in `source`, relative to the
-/// folders of the models that name them; images are not decoded. Returns the elements of the bodies beside it.
+/// folders of the models that name them; images are not decoded. Also returns the elements of the bodies.
 pub(super) fn compile(
     tree: &Tree,
     document: &TypedDocument,

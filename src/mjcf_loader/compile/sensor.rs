@@ -117,7 +117,7 @@ fn joint(context: &Context, sensor: &Sensor, name: &str, ids: &Ids, arrays: &Arr
     }
 }
 
-/// Finds the object of a sensor of a frame, and that in whose frame it measures.
+/// Finds the object of a frame sensor, and the object in whose frame it measures.
 fn frames(
     context: &Context,
     at: usize,

@@ -1,4 +1,4 @@
-//! Shells: shapes whose surface alone has mass, by MuJoCo 3.3.0's formulas.
+//! Shells: shapes of which only the surface has mass, by MuJoCo 3.3.0's formulas.
 
 use std::f64::consts::PI;
 

@@ -21,8 +21,8 @@ const VERTICES: &str = "vertid names a vertex that the skin does not have";
 const FINITE: &str = "a number of the skin is not finite";
 const TOTAL: &str = "each vertex of a skin needs bones whose vertweight is above 0 in total";
 
-/// Compiles all skins. Their files are looked up in `source`; together they have as many vertices, texture coordinates, faces and weights
-/// as the limits allow for elements of meshes.
+/// Compiles all skins. Their files are looked up in `source`; their vertices, texture coordinates, faces and weights count together
+/// towards the limit on elements of meshes.
 pub(super) fn compile_skins(
     context: &Context,
     document: &TypedDocument,
@@ -87,7 +87,7 @@ fn read(context: &Context, skin: &Skin, source: &dyn AssetSource) -> Result<Skin
     }
 }
 
-/// Takes the data in the document.
+/// Uses the data in the document.
 fn written(skin: &Skin) -> Result<SkinFile, &'static str> {
     let bones = skin.bones.iter().map(|bone| {
         let index = |&x: &f64| (x.fract() == 0.0 && (0.0..f64::from(u32::MAX)).contains(&x)).then_some(x as u32);
@@ -117,7 +117,7 @@ fn check(mut skin: SkinFile) -> Result<SkinFile, &'static str> {
     }
     let count = skin.vert.len();
     let known = |&vertex: &u32| (vertex as usize) < count;
-    // MuJoCo takes these, and draws what stands beside the vertices in its memory
+    // MuJoCo takes these, and draws whatever follows the vertices in its memory
     if !skin.face.as_flattened().iter().all(known) {
         return Err(FACES);
     }

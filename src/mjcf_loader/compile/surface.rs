@@ -194,7 +194,7 @@ fn grid(context: &Context, texture: &surface::Texture) -> Result<([usize; 2], Ve
     Ok((size, layout.chars().map(face).collect::<Result<_, _>>()?))
 }
 
-/// Returns the name of a texture; one without a name is called after its file, without directory and extension.
+/// Returns the name of a texture; one without a name is named after its file, without directory and extension.
 fn texture_name(context: &Context, texture: &surface::Texture) -> Result<String, LoadError> {
     if !texture.name.is_empty() {
         return Ok(texture.name.clone());

@@ -1,4 +1,4 @@
-//! Bodies of other documents, copied with all that belongs to them.
+//! Copies bodies of other documents with everything that belongs to them.
 
 use std::collections::BTreeSet;
 
@@ -12,7 +12,7 @@ use crate::schema::DEFAULT;
 const ABSENT: &str = "something there refers to the body and to an element that is not attached, by a name that this document has as well, which \
      MuJoCo 3.3.0 may take for it: rename that, or attach the body that is meant";
 
-/// What names begin and end with.
+/// The prefix and the suffix of names.
 #[derive(Clone, Copy)]
 pub(super) struct Naming<'a> {
     prefix: &'a str,
@@ -29,7 +29,8 @@ impl Naming<'_> {
     }
 }
 
-/// Kinds that `<attach>` copies where all that they refer to is copied, in the order in which they may refer to each other, with their section.
+/// Kinds that `<attach>` copies if everything that they refer to is copied, in the order in which they may refer to each other, with their
+/// section.
 const REFERRING: [(Kind, &str); 6] = [
     (Kind::Pair, "contact"),
     (Kind::Exclude, "contact"),
@@ -49,12 +50,12 @@ const COPIED: [(Kind, &str); 6] = [
 ];
 
 impl Document {
-    /// Copies a body of another document, with all in it, into a body, a frame or the world of this one, as MuJoCo's `<attach>` does. In
-    /// place of a body it may be a frame, or the world, of which all comes as a new frame. Returns the copy.
+    /// Copies a body of another document, with all in it, into a body, a frame or the world of this one, as MuJoCo's `<attach>` does. The source
+    /// may also be a frame, or the world, whose contents come as a new frame. Returns the copy.
     ///
     /// With the body come its default classes, all assets, and the contact pairs, excludes, tendons, equality constraints, actuators and
     /// sensors that refer to nothing else. All names get `prefix` before and `suffix` behind them. If the angles of one document are in
-    /// degrees and those of the other in radians, this document is in radians afterwards. Options and statistics are not taken over.
+    /// degrees and those of the other in radians, this document is in radians afterwards. Options and statistics are not copied.
     ///
     /// # Errors
     /// [`EditError::NoElement`]; [`EditError::Unattachable`]: keyframes with values, or elements that make others (`composite`, `attach`);
@@ -102,7 +103,7 @@ impl Document {
         let mut keys = self.all(Kind::Key).into_iter();
         if keys.any(|id| states.iter().any(|state| self.nodes[id.0].attribute(state).is_some())) {
             return Err(EditError::Unattachable(
-                "a document has keyframes, whose states have as many numbers as it has joints: remove them before, and add them anew",
+                "a document has keyframes, whose states have as many numbers as it has joints: remove them first, and add them again",
             ));
         }
         Ok(())
@@ -218,7 +219,7 @@ impl Document {
         Ok(())
     }
 
-    /// Tells whether all is copied that an element, or a part of it, refers to.
+    /// Returns whether everything that an element, or a part of it, refers to is copied.
     fn refers_within(&self, at: usize, kind: Kind, naming: Naming, names: &BTreeSet<(Kind, String)>) -> bool {
         let node = &self.nodes[at];
         let named = self.all_references(at);

@@ -6,7 +6,7 @@ use super::error::EditError;
 use super::values::MAIN;
 use crate::schema::{DEFAULT, Rule};
 
-/// The orientations, of which one is enough to turn all others back.
+/// The attributes of an orientation. Setting one is enough to reset the others.
 const ORIENTATIONS: [&str; 5] = ["quat", "axisangle", "xyaxes", "zaxis", "euler"];
 
 fn rule_of(from: &Rule, name: &str) -> Option<&'static Rule> {
@@ -14,7 +14,7 @@ fn rule_of(from: &Rule, name: &str) -> Option<&'static Rule> {
 }
 
 impl Document {
-    /// Tells whether any default class says anything.
+    /// Returns whether any default class sets an attribute.
     fn has_classes(&self) -> bool {
         self.all_main().any(|at| !self.nodes[at].children.is_empty())
     }
@@ -74,7 +74,8 @@ impl Document {
         }
     }
 
-    /// Gives a class the defaults of MJCF for all that the main class says and it does not, as it does not derive from that.
+    /// Sets MJCF's defaults in a class for everything that the main class sets and it does not, because it does not derive from the
+    /// main class.
     fn turn_back(&mut self, class: usize) -> Result<(), EditError> {
         let said: Vec<usize> = self.all_main().flat_map(|at| self.nodes[at].children.clone()).collect();
         for at in said {

@@ -101,7 +101,7 @@ impl Document {
         ElementId(ROOT)
     }
 
-    /// Returns `<worldbody>`, the first where there are several.
+    /// Returns `<worldbody>`, the first if there are several.
     pub fn world(&self) -> ElementId {
         let world = |at: &&usize| self.nodes[**at].rule.name == "worldbody";
         ElementId(self.nodes[ROOT].children.iter().find(world).copied().unwrap_or(ROOT))
@@ -115,7 +115,7 @@ impl Document {
         }
     }
 
-    /// Returns the section of the document with this name, for instance `actuator`: the last of several, a new one where there is none.
+    /// Returns the section of the document with this name, for instance `actuator`: the last one if there are several, or a new one.
     ///
     /// # Errors
     /// [`EditError::UnknownElement`]: MJCF has no such section.
@@ -186,7 +186,7 @@ impl Document {
         Ok(node.attribute(name))
     }
 
-    /// Sets an attribute. Of attributes that exclude each other, such as `quat` and `euler`, the others are dropped.
+    /// Sets an attribute. Attributes that exclude it are dropped: setting `quat` drops `euler`.
     ///
     /// # Errors
     /// [`EditError::NoElement`]; [`EditError::UnknownAttribute`]; [`EditError::Value`]: the attribute cannot have the value.
@@ -208,7 +208,7 @@ impl Document {
         Ok(())
     }
 
-    /// Takes an attribute away, so that the default counts again.
+    /// Removes an attribute, so the default applies again.
     ///
     /// # Errors
     /// [`EditError::NoElement`]; [`EditError::UnknownAttribute`]
@@ -218,7 +218,7 @@ impl Document {
         Ok(())
     }
 
-    /// Adds an element behind those in another.
+    /// Appends an element to another.
     ///
     /// # Errors
     /// [`EditError::NoElement`]; [`EditError::UnknownElement`]: it cannot stand there.
@@ -243,7 +243,7 @@ impl Document {
         Ok(ElementId(self.push(parent.0, found, index)))
     }
 
-    /// Moves an element with all in it behind the elements of another parent.
+    /// Moves an element with its contents to the end of another parent.
     ///
     /// # Errors
     /// [`EditError::NoElement`]; [`EditError::UnknownElement`]: it cannot stand there; [`EditError::Needed`]: it would be in itself.

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-/// An element of a [`Document`](super::Document). It stays the same element whatever is added or removed around it.
+/// An element of a [`Document`](super::Document). It stays the same element when others are added or removed around it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct ElementId(pub(super) usize);
 

@@ -1,4 +1,4 @@
-//! What can go wrong while a document is edited.
+//! Errors of editing a document.
 
 use std::fmt;
 
@@ -15,7 +15,7 @@ pub enum EditError {
     UnknownElement {
         /// The element around it.
         parent: &'static str,
-        /// The name asked for.
+        /// The requested name.
         name: String,
         /// A name that may have been meant.
         nearest: Option<&'static str>,
@@ -25,7 +25,7 @@ pub enum EditError {
     UnknownAttribute {
         /// The element.
         element: &'static str,
-        /// The attribute asked for.
+        /// The requested attribute.
         name: String,
         /// A name that may have been meant.
         nearest: Option<&'static str>,
@@ -63,7 +63,7 @@ pub enum EditError {
     /// An element that cannot be attached.
     #[error("cannot attach: {0}")]
     Unattachable(&'static str),
-    /// Documents with different settings of `compiler`, by which the numbers of one would change their meaning in the other.
+    /// The documents have different settings of `compiler` that would change the meaning of numbers.
     #[error("cannot attach: compiler has {0}: set it alike in both documents")]
     Settings(Box<SettingsConflict>),
     /// A default class that does not exist.

@@ -1,4 +1,4 @@
-//! Kinds of elements, and which attributes name elements of which kind.
+//! Kinds of elements, and the kind that each attribute refers to.
 
 use super::document::{Document, ElementNode};
 use super::element_id::ElementId;
@@ -62,7 +62,7 @@ impl Kind {
         Self::ALL.iter().copied().find(|kind| kind.name() == name)
     }
 
-    /// Tells whether elements of the kind are in bodies, or are bodies.
+    /// Returns whether elements of the kind are in bodies, or are bodies.
     pub(super) fn in_bodies(self) -> bool {
         self <= Kind::Light
     }
@@ -76,7 +76,7 @@ fn object(kind: &str) -> Option<Kind> {
     }
 }
 
-/// Returns the kind of what an attribute names; `None` for one that names no element.
+/// Returns the kind of element that an attribute names; `None` for an attribute that names no element.
 pub(super) fn referred(node: &ElementNode, attribute: &str) -> Option<Kind> {
     let kind = match attribute {
         "body" | "body1" | "body2" if node.rule.name != "attach" => Kind::Body,
@@ -106,8 +106,8 @@ pub(super) fn references(node: &ElementNode) -> impl Iterator<Item = (Kind, &'st
     named.filter_map(|(attribute, text)| Some((referred(node, attribute)?, *attribute, text.as_str())))
 }
 
-/// Tells whether an element has no meaning without what it names: a constraint, a tendon, an actuator, a sensor or a part of one, not a
-/// geom without its material.
+/// Returns whether an element has no meaning without the element that it names: a constraint, a tendon, an actuator, a sensor or a part
+/// of one, but not a geom without its material.
 pub(super) fn loses_meaning(document: &Document, at: usize) -> bool {
     let mut up = document.nodes[at].parent;
     while let Some(parent) = up {

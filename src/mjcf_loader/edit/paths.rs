@@ -25,7 +25,7 @@ fn folders(element: &str) -> Option<[&'static str; 2]> {
     }
 }
 
-/// Rewrites the files of an element of an included document that are beside that document, so that the document itself finds them.
+/// Rewrites the paths of files next to an included document so that the including document finds them.
 pub(super) fn rebase(node: &mut ElementNode, tree: &Tree, at: usize, source: &dyn AssetSource) {
     let (main, own) = (&tree.files()[0], tree.file(at));
     let Some(names) = folders(node.rule.name).filter(|_| own != main) else {
@@ -56,7 +56,7 @@ pub(super) fn rebase(node: &mut ElementNode, tree: &Tree, at: usize, source: &dy
         };
         let probed = match node.rule.name {
             _ if strips => None,
-            // an attached model is looked for beside the file that names it, and nowhere else
+            // an attached model is looked for only next to the file that names it
             "model" => Some("\0"),
             "hfield" | "skin" => Some(
                 sections()

@@ -26,7 +26,7 @@ impl Document {
                 if node.removed || !loses_meaning(self, at) || !refers(node) {
                     continue;
                 }
-                // a tendon goes with what it runs along, and a skin with a bone
+                // a tendon is removed with an element of its path, and a skin with a bone
                 let whole = match self.kind_at(at) {
                     Some(_) => at,
                     None => self.nodes[at].parent.unwrap_or(at),
@@ -47,7 +47,7 @@ impl Document {
         self.take_out(id).map(drop)
     }
 
-    /// Takes an element out of the tree; returns the names of it and of all in it.
+    /// Removes an element from the tree; returns its name and those of its contents.
     fn take_out(&mut self, id: ElementId) -> Result<Vec<(Kind, String)>, EditError> {
         let node = self.node(id)?;
         let at = id.0;

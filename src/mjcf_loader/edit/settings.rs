@@ -30,7 +30,7 @@ impl Document {
             .map_or_else(|| Compiler::default_of(name), str::to_owned)
     }
 
-    /// Tells whether angles are in degrees.
+    /// Returns whether angles are in degrees.
     pub(super) fn in_degrees(&self) -> bool {
         self.compiler("angle") != Some("radian")
     }

@@ -13,10 +13,10 @@ use crate::spec::Spec;
 use crate::xml::{Tree, text_of};
 
 impl Document {
-    /// Reads the document at `path` in `source`, with what it includes.
+    /// Reads the document at `path` in `source`, with its includes.
     ///
     /// # Errors
-    /// As [`crate::load`], but for what only compiling shows.
+    /// Those of [`crate::load`], except for faults that only compiling finds.
     pub fn read(source: &dyn AssetSource, path: &str) -> Result<Self, EditError> {
         let path = source.resolve("", path).map_err(|e| LoadError::in_file(path, e))?;
         let bytes = source.read(&path).map_err(|e| LoadError::in_file(&path, e))?;

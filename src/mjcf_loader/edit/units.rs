@@ -12,7 +12,7 @@ fn of_frames(value: f64) -> f64 {
     value / 180.0 * PI
 }
 
-/// Converts an angle of a joint as the compiler does, whose last bit may be another.
+/// Converts an angle of a joint as the compiler does, whose last bit may differ.
 fn of_joints(value: f64) -> f64 {
     value * (PI / 180.0)
 }

@@ -10,8 +10,8 @@ use crate::schema::DEFAULT;
 pub(super) const MAIN: &str = "main";
 
 impl Document {
-    /// Returns the value of an attribute as a document would write it: that which the element gives, or else that of its default class, or
-    /// else the default of MJCF, which is empty where there is none.
+    /// Returns the value of an attribute as a document would write it: the element's own, else that of its default class, else MJCF's
+    /// default, which is empty if MJCF has none.
     ///
     /// Attributes of actuators other than `general` that stand for several of it, such as `kp`, are not followed through classes; see
     /// [`Document::generalize`].
@@ -35,7 +35,7 @@ impl Document {
         }
     }
 
-    /// Returns the value that an attribute has where the element does not give it.
+    /// Returns the value of an attribute that the element does not give.
     fn value_of_class(&self, id: ElementId, name: &str) -> Result<String, EditError> {
         let node = self.node(id)?;
         let attr = attr_of(node, name)?;
@@ -80,7 +80,7 @@ impl Document {
         None
     }
 
-    /// Returns the section of the class of an element; `None` inside where there are no defaults at all.
+    /// Returns the section of an element's class; `None` inside if the document has no defaults at all.
     fn class_at(&self, at: usize) -> Result<usize, EditError> {
         let name = self.class_name_at(at);
         match self.find(Kind::Class, name) {
@@ -112,7 +112,7 @@ impl Document {
                 return None;
             }
             let top = node.parent == Some(0);
-            // the main class may be in several sections, of which the last counts
+            // the main class may be in several sections; the last one counts
             let sections: Vec<usize> = if top { self.all_main().collect() } else { vec![at] };
             let given = sections
                 .iter()

@@ -81,7 +81,7 @@ impl AttachedPart<'_> {
         }
     }
 
-    /// Tells whether an element of the model is copied.
+    /// Returns whether an element of the model is copied.
     fn has(&self, thing: ElementKind, name: &str) -> bool {
         // a reference to the world keeps its meaning only if the prefix does not change its name
         let world = thing == ElementKind::Body && name == "world" && self.prefix.is_empty();

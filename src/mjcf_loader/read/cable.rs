@@ -20,7 +20,7 @@ const ONE_BOX: &str =
 const SHAPE: &str =
     "the geoms of a cable are capsules, cylinders or boxes: give <geom type=\"capsule\" size=\"0.01\"/>";
 
-/// Tells whether MuJoCo would lose a composite: one in a `<replicate>` without a body around it is not copied. Other frames around it are
+/// Returns whether MuJoCo would lose a composite: one in a `<replicate>` without a body around it is not copied. Other frames around it are
 /// ignored.
 fn is_lost(spot: Insertion, document: &TypedDocument) -> bool {
     let frame = |id: Option<usize>| id.map(|id| &document.frames[id]);

@@ -86,8 +86,8 @@ impl SkinGrid {
         face.clone().chain(face).flatten().collect()
     }
 
-    /// Hangs the vertices at the bones, row by row of points that bones hold: between four of them they are on a surface of cubics
-    /// whose slopes at a point are those from its neighbours. The weights of a vertex can be below 0; their sum is 1.
+    /// Binds the vertices to the bones, row by row of points that bones hold. Between four such points the vertices lie on a surface of
+    /// cubics whose slopes at a point follow from its neighbours. The weights of a vertex can be negative; their sum is 1.
     fn hang(&self, bones: &mut [Bone]) {
         let [rows, columns] = self.held.map(|count| count - 1);
         for (i, j) in (0..rows).flat_map(|i| (0..columns).map(move |j| (i, j))) {
@@ -117,8 +117,8 @@ impl SkinGrid {
     }
 }
 
-/// Returns the values at 0 and 1 and the slopes there by four points in a row, between the middle two of which they are; the first and the
-/// last may be missing.
+/// Returns the values and slopes at 0 and 1 of a cubic between the middle two of four successive points, by point. The first and the last
+/// point may be missing.
 fn corners(first: bool, last: bool) -> [[f64; 4]; 4] {
     let edge = [0.0, -1.0, 1.0, 0.0];
     [

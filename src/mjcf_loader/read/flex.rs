@@ -1,4 +1,4 @@
-//! `<flex>` and `<flexcomp>`: their elements as they are written. The compiler makes the shapes, of which some are in files.
+//! `<flex>` and `<flexcomp>`: their elements as they are written. The compiler makes the shapes, because some are in files.
 
 use super::Classes;
 use super::insertion::Insertion;

@@ -1,5 +1,5 @@
-//! Keyframes beside `<attach>` and `<replicate>`, as in MuJoCo 3.3.0: the joints, actuators and mocap bodies that exist at that time keep the
-//! values of a keyframe, and their copies take them along.
+//! Keyframes in documents with `<attach>` and `<replicate>`, as in MuJoCo 3.3.0: the joints, actuators and mocap bodies that exist at that
+//! time keep the values of a keyframe, and their copies get the same values.
 
 use crate::actuator::Actuator;
 use crate::attached::{Sizes, na};
@@ -46,7 +46,7 @@ pub(super) fn say_keys(
     Ok(moved)
 }
 
-/// Takes the next numbers of a keyframe; none if it does not give them.
+/// Removes the next numbers of a keyframe; none if it does not give them.
 fn next(numbers: &mut &[f64], count: usize) -> Vec<f64> {
     let (own, rest) = numbers.split_at(count.min(numbers.len()));
     *numbers = rest;

@@ -1,7 +1,7 @@
 //! `<replicate>`: copies of its content and of all elements that refer to it, as MuJoCo 3.3.0 makes them.
 //!
 //! What it holds is read once, under its own names, into a body that stands for all copies. Each copy takes what hangs on that body and the
-//! bodies in it, with the number of the copy behind their names. Elements outside that refer to it by name are copied beside it, as far as
+//! bodies in it, with the number of the copy behind their names. Elements outside that refer to it by name are copied with it, as far as
 //! all or, of some kinds, a part of what they refer to was copied; those that refer to the original go with it.
 
 use std::collections::BTreeSet;
@@ -17,7 +17,8 @@ use crate::schema::Element;
 use crate::table::Table;
 use crate::xml::Tree;
 
-/// How many times as many elements as a document may have are looked at for copies: those that refer to others are for every copy again.
+/// Limit on the elements examined for copies, relative to the limit on a document's elements: those that refer to others are examined again
+/// for every copy.
 const LOOKS: usize = 100;
 
 /// The content of a `<replicate>`, while it is read.
@@ -179,7 +180,7 @@ impl ReplicateContent {
         }
     }
 
-    /// Removes the original. Bodies and frames behind it move up.
+    /// Removes the original. Bodies and frames after it move up.
     fn take_away(&self, spot: Insertion, ends: (usize, usize), document: &mut TypedDocument) {
         let (bodies, frames) = (ends.0 - self.body, ends.1 - self.frame);
         document.bodies.drain(self.body..ends.0);
@@ -244,7 +245,7 @@ fn amount(bodies: &[Body]) -> usize {
         .sum()
 }
 
-/// Refuses a name that two elements of a kind have: of those that refer to copies, one may be lost before the compiler looks.
+/// Refuses a name that two elements of a kind share: if they refer to copies, one may be lost before the compiler checks.
 fn distinct(document: &TypedDocument, tree: &Tree) -> Result<(), LoadError> {
     let tendons = document.tendons.iter().map(|e| (e.at, "tendon", &e.name));
     let actuators = document.actuators.iter().map(|e| (e.at, "actuator", &e.name));
@@ -275,7 +276,7 @@ fn look(document: &mut TypedDocument, at: usize, tree: &Tree) -> Result<(), Load
     Ok(())
 }
 
-/// Moves the document's keyframes, with a suffix, behind its own.
+/// Appends the document's keyframes, with a suffix, to its own.
 fn move_keys(document: &mut TypedDocument, suffix: &str, at: usize, tree: &Tree) -> Result<(), LoadError> {
     let said = said(document);
     document.copied.add_keys(said, at, tree)?;

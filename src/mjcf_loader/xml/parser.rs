@@ -118,7 +118,7 @@ impl<'t> Parser<'t> {
         }
     }
 
-    /// Notes that there is something in the open element beside elements.
+    /// Notes that the open element contains more than elements.
     fn fill(&mut self) {
         if let Some(&at) = self.open.last() {
             self.tree.nodes[at].filled = true;

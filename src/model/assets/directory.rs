@@ -63,7 +63,7 @@ impl DirAssets {
     }
 }
 
-/// Reads a file of at most so many bytes, which a document names by `path`.
+/// Reads a file that a document names by `path`, of at most `limit` bytes.
 pub(super) fn read(file: &Path, path: &str, limit: u64) -> Result<Cow<'static, [u8]>, AssetError> {
     match files::read(file, limit) {
         Ok(bytes) => Ok(Cow::Owned(bytes)),

@@ -7,7 +7,8 @@ use super::directory::read;
 use super::{AssetError, AssetSource, is_absolute};
 use crate::limits::Limits;
 
-/// Reads whatever a document names, as MuJoCo does: beside it, above it (`../meshes/arm.stl`) and by absolute path.
+/// Reads any file that a document names, as MuJoCo does: next to the document, above it (`../meshes/arm.stl`) and by absolute
+/// path.
 ///
 /// This is for documents that one would run in MuJoCo, too. [`DirAssets`](super::DirAssets) is for those of strangers.
 #[derive(Clone, Debug)]

@@ -159,8 +159,8 @@ impl AssetSource for MemoryAssets {
     }
 }
 
-/// A source of files that are embedded in the program, as pairs of path and content. A file without content stands for one that this
-/// build leaves out: documents may name it, and reading it is an error.
+/// A source of files that are embedded in the program, as pairs of path and content. A file without content is one that this build
+/// leaves out: documents may name it, but reading it is an error.
 #[derive(Clone, Copy, Debug)]
 pub struct EmbeddedAssets(pub &'static [(&'static str, &'static [u8])]);
 
@@ -206,7 +206,7 @@ impl Overlay {
         }
     }
 
-    /// Lays a source over those that are there.
+    /// Adds a source that takes precedence over the existing ones.
     #[must_use]
     pub fn with(mut self, layer: impl AssetSource + 'static) -> Self {
         self.layers.push(Arc::new(layer));

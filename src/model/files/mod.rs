@@ -11,8 +11,8 @@ pub use owner::Owner;
 pub use unfinished::replace_file;
 pub use unfinished::{replace_file_with, sweep, unfinished};
 
-/// Opens a file that comes from outside. Anything but a regular file is refused before it is opened: a pipe would
-/// wait for ever, and a device need not end.
+/// Opens an untrusted file. Anything but a regular file is refused before it is opened: a pipe would block for ever,
+/// and a device may have no end.
 pub fn open(path: &Path) -> io::Result<File> {
     let regular = |meta: std::fs::Metadata| {
         if meta.is_file() {
@@ -31,10 +31,11 @@ pub fn open(path: &Path) -> io::Result<File> {
     Ok(file)
 }
 
-/// Reads a file that comes from outside, of at most `limit` bytes; see [`open`]. The error for a larger one has the kind
+/// Reads an untrusted file of at most `limit` bytes; see [`open`]. The error for a larger one has the kind
 /// [`io::ErrorKind::FileTooLarge`].
 pub fn read(path: &Path, limit: u64) -> io::Result<Vec<u8>> {
-    // one byte more than allowed tells a file that is too large from one that just fits, whatever its metadata say
+    // one byte more than allowed distinguishes a file that is too large from one that just fits, even if its metadata
+    // are wrong
     let mut bytes = Vec::new();
     let file = open(path)?;
     if file.metadata()?.len() <= limit {

@@ -19,7 +19,7 @@ pub struct Owner {
 }
 
 impl Owner {
-    /// Takes possession of a folder.
+    /// Claims a folder.
     ///
     /// # Errors
     /// [`io::ErrorKind::ResourceBusy`] for a folder that belongs to another process; errors of the file system.
@@ -60,7 +60,7 @@ fn busy(owner: &str) -> io::Error {
 impl Drop for Owner {
     fn drop(&mut self) {
         if self.file.is_some() {
-            // while it is locked, so that nobody else's is removed
+            // while it is locked, so that no other process's file is removed
             let _ = std::fs::remove_file(&self.path);
         }
     }

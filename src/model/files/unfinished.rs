@@ -24,7 +24,7 @@ pub fn unfinished(folder: &Path, name: &OsStr) -> io::Result<(PathBuf, File)> {
                 // until it was locked, another process could take it for abandoned
                 Ok(()) if !path.exists() => {}
                 Err(TryLockError::WouldBlock) => {}
-                // a file system without locks has unfinished files all the same
+                // a file system without locks still has unfinished files
                 Ok(()) | Err(TryLockError::Error(_)) => return Ok((path, file)),
             },
             Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {}

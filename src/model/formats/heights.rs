@@ -6,14 +6,14 @@ use crate::limits::Limits;
 /// The format of a file with heights.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum HeightFormat {
-    /// A picture, of whose colours the red one counts.
+    /// A picture, whose red channel counts.
     Png,
     /// Numbers of rows and columns, then numbers in single precision.
     Custom,
 }
 
 impl HeightFormat {
-    /// Returns the format that the ending of a file's name stands for.
+    /// Returns the format for the extension of a file's name.
     pub fn of_path(path: &str) -> Self {
         let png = path
             .rsplit_once('.')

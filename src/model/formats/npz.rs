@@ -53,12 +53,12 @@ pub enum NpzError {
         /// Description of the fault.
         reason: String,
     },
-    /// There is no such array.
+    /// The archive has no such array.
     #[error("{file}: has no array `{}`", quoted(.array))]
     Missing {
         /// The file.
         file: String,
-        /// The array asked for.
+        /// The requested array.
         array: String,
     },
     /// The array is damaged, too large or of a kind that is not read.
@@ -71,7 +71,7 @@ pub enum NpzError {
         /// Description of the fault.
         reason: String,
     },
-    /// The array's numbers do not fit the type asked for.
+    /// The array's numbers do not fit the requested type.
     #[error("{file}: array `{}` of {} cannot be read as {wanted}", quoted(.array), quoted(.dtype))]
     Type {
         /// The file.
@@ -80,7 +80,7 @@ pub enum NpzError {
         array: String,
         /// NumPy's description of its type.
         dtype: String,
-        /// The type asked for.
+        /// The requested type.
         wanted: &'static str,
     },
     /// The array cannot be added to an archive.

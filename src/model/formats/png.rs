@@ -41,9 +41,9 @@ pub enum PngError {
     Size {
         /// Number of bytes.
         found: usize,
-        /// Width asked for, pixels.
+        /// Requested width, pixels.
         width: usize,
-        /// Height asked for, pixels.
+        /// Requested height, pixels.
         height: usize,
         /// Bytes of a pixel.
         channels: usize,

@@ -21,7 +21,7 @@ pub enum SkinError {
     /// The file ends before its content does.
     #[error("the file has {0} bytes, fewer than its numbers of elements ask for")]
     Cut(usize),
-    /// The file goes on after its content.
+    /// The file is longer than its content.
     #[error("the file has {0} bytes after its last bone")]
     Rest(usize),
     /// The name of a body is not UTF-8.

@@ -1,7 +1,7 @@
 //! Convex hulls of points.
 //!
 //! A Quickhull (Barber, Dobkin and Huhdanpaa, "The Quickhull Algorithm for Convex Hulls", ACM Transactions on Mathematical
-//! Software 22, 1996) of its own: what it finds decides which sensors exist and which points of a mesh touch, so it uses nothing but
+//! Software 22, 1996) of its own: its result decides which sensors exist and which points of a mesh touch, so it uses nothing but
 //! `+ - * /` and square roots, which are the same on every target.
 
 use super::*;
@@ -59,7 +59,7 @@ impl HalfSpace {
     }
 }
 
-/// Returns four points that span a volume, the last below the face of the others; `None` if there are none.
+/// Returns four points that span a volume, the last one below the face of the other three; `None` if there are no such points.
 fn first_corners(points: &[Vec3], tolerance: f64) -> Option<[usize; 4]> {
     let farthest = |measure: &dyn Fn(Vec3) -> f64| {
         let mut best = (0, f64::NEG_INFINITY);

@@ -136,7 +136,7 @@ pub fn quat_conj(a: Quat) -> Quat {
     [a[0], -a[1], -a[2], -a[3]]
 }
 
-/// Normalises a quaternion; zero becomes the identity, and one within [`MINVAL`] of unit length is left alone.
+/// Normalises a quaternion; zero becomes the identity, and one within [`MINVAL`] of unit length stays as it is.
 #[inline(always)]
 pub fn quat_normalize(q: Quat) -> Quat {
     let length = (q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]).sqrt();

@@ -3,8 +3,8 @@
 use std::cmp::Ordering;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Sorts as `slice::sort_by` does, with one instance for all types: each of the standard library's is up to 9 kB of a WebAssembly module. What
-/// is sorted in a step, or by the thousand, has an instance of its own.
+/// Sorts as `slice::sort_by` does, with one instance for all types: each of the standard library's takes up to 9 kB of a WebAssembly module.
+/// Hot or long sorts have an instance of their own.
 pub fn sort_by<T: Clone>(items: &mut [T], compare: impl Fn(&T, &T) -> Ordering) {
     let order = order(items.len(), &|a, b| compare(&items[a], &items[b]));
     let sorted: Vec<T> = order.into_iter().map(|at| items[at].clone()).collect();

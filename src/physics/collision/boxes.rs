@@ -76,7 +76,7 @@ impl<'a> OrientedBox<'a> {
             .sum()
     }
 
-    /// Tells whether one of its faces is further from another box than `margin` (m), which is beyond it.
+    /// Returns whether one of its faces is further than `margin` (m) from another box beyond that face.
     fn clears(&self, other: &OrientedBox, margin: f64) -> bool {
         let between = sub(other.centre, self.centre);
         (0..3).any(|k| {
@@ -85,8 +85,8 @@ impl<'a> OrientedBox<'a> {
         })
     }
 
-    /// Tells whether a face of one of two boxes is further from the other than `margin` (m), as MuJoCo does, which compares nothing with a
-    /// box that has no end in some direction.
+    /// Returns whether a face of one of two boxes is further from the other than `margin` (m), as MuJoCo does, which skips boxes that are infinite
+    /// in some direction.
     #[doc(alias = "mj_collideOBB")]
     pub(super) fn apart(&self, other: &OrientedBox, margin: f64) -> bool {
         let endless = |half: &f64| *half >= ENDLESS;

@@ -4,11 +4,11 @@ use crate::math::{Mat3, Vec3, dot, principal_axes, quat_normalize, quat_to_mat, 
 use crate::model::{GeomType, Model};
 use crate::state::State;
 
-/// Overlap of spheres, relative to their coordinates, of which single precision leaves something.
+/// Overlap of spheres, relative to their coordinates, that survives rounding to single precision.
 const SURE: f64 = 4e-7;
 
-/// Tells whether MuJoCo 3.3.0 drops a pair of geoms that touch: the spheres around them overlap by less than single precision can tell apart,
-/// so that its sweep finds their bodies apart.
+/// Returns whether MuJoCo 3.3.0 drops a pair of geoms that touch: the spheres around them overlap by less than single precision resolves, so
+/// its sweep misses their bodies.
 #[inline(always)]
 pub(super) fn drops(model: &Model, s: &State, [a, b]: [usize; 2]) -> bool {
     let (first, second) = (s.geom_xpos[a], s.geom_xpos[b]);
@@ -22,7 +22,7 @@ pub(super) fn drops(model: &Model, s: &State, [a, b]: [usize; 2]) -> bool {
     decides(model, s, [a, b])
 }
 
-/// As [`drops`], for spheres that hardly overlap. It is kept out of the steps in which none do.
+/// As [`drops`], for spheres that hardly overlap. Not inlined, because most steps have none.
 #[inline(never)]
 fn decides(model: &Model, s: &State, geoms: [usize; 2]) -> bool {
     let mut bodies = geoms.map(|g| model.geom_bodyid[g]);
@@ -38,13 +38,13 @@ fn decides(model: &Model, s: &State, geoms: [usize; 2]) -> bool {
     apart || aside(1) || aside(2)
 }
 
-/// Tells whether a body is paired with all others: the world, and bodies that never move and have a plane.
+/// Returns whether a body is paired with all others: the world, and bodies that never move and have a plane.
 fn is_endless(model: &Model, body: usize) -> bool {
     let mut geoms = (0..model.ngeom()).filter(|&g| model.geom_bodyid[g] == body);
     body == 0 || model.body_weldid[body] == 0 && geoms.any(|g| model.geom_type[g] == GeomType::Plane)
 }
 
-/// Tells whether a pair is one of the document's own, which are not swept.
+/// Returns whether a pair is explicit in the document. Such pairs are not swept.
 fn is_explicit(model: &Model, [a, b]: [usize; 2]) -> bool {
     model.pair_geom.iter().any(|pair| *pair == [a, b] || *pair == [b, a])
 }

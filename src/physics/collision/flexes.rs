@@ -32,12 +32,12 @@ pub struct FlexSweep {
     pairs: Vec<[u32; 2]>,
 }
 
-/// Tells whether boxes, given by centres and half sizes, are farther apart along an axis than a margin.
+/// Returns whether boxes, given by centres and half sizes, are farther apart along an axis than a margin.
 fn boxes_apart(a: &[f64; 6], b: &[f64; 6], margin: f64) -> bool {
     (0..3).any(|k| a[k] + a[k + 3] + margin < b[k] - b[k + 3] || b[k] + b[k + 3] + margin < a[k] - a[k + 3])
 }
 
-/// Tells whether a ball, taken for a cube, is outside of a box.
+/// Returns whether a ball, treated as a cube, is outside a box.
 fn ball_apart(centre: Vec3, radius: f64, b: &[f64; 6]) -> bool {
     (0..3).any(|k| centre[k] + radius < b[k] - b[k + 3] || centre[k] - radius > b[k] + b[k + 3])
 }
@@ -52,7 +52,7 @@ fn joined(a: &[f64; 6], b: &[f64; 6]) -> [f64; 6] {
     })
 }
 
-/// Tells whether an element takes part in contacts with others.
+/// Returns whether an element takes part in contacts with others.
 fn is_active(flex: &Flex, element: usize) -> bool {
     flex.dim < 3 || i64::try_from(flex.elemlayer[element]).is_ok_and(|layer| layer < i64::from(flex.activelayers))
 }

@@ -1,4 +1,4 @@
-//! Which geoms may touch, and which do.
+//! Collision detection: the geoms that may touch, and those that do.
 //!
 //! A sweep over the boxes of all geoms finds the pairs that may touch; the routines of [`crate::contact`] work
 //! on world poses, as contact geometry is discontinuous in their last bits.

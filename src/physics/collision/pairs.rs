@@ -95,7 +95,7 @@ impl PairTable {
         &self.trees
     }
 
-    /// Tells whether two geoms may touch.
+    /// Returns whether two geoms may touch.
     pub fn may_touch(&self, a: usize, b: usize) -> bool {
         match &self.table {
             Some(_) => self.tabulated(a, b).next().is_some(),
@@ -103,7 +103,7 @@ impl PairTable {
         }
     }
 
-    /// Tells whether a geom may touch any other, as far as its own properties say.
+    /// Returns whether a geom may touch any other, as far as its own properties say.
     pub(super) fn takes_part(&self, geom: usize) -> bool {
         match &self.table {
             Some(table) => table.pairs.iter().any(|p| p.geom.contains(&geom)),
@@ -111,7 +111,7 @@ impl PairTable {
         }
     }
 
-    /// Returns the places of the pairs of two geoms among those that are listed; none if they may not touch.
+    /// Returns the indices of the pairs of two geoms in the list; none if they may not touch.
     #[inline]
     pub(super) fn tabulated(&self, a: usize, b: usize) -> impl Iterator<Item = usize> {
         let table = self.table.as_ref();
@@ -199,7 +199,7 @@ fn explicit(model: &Model, p: usize) -> GeomPair {
     }
 }
 
-/// The properties of a geom or a flex of which the parameters of contacts are mixed.
+/// The properties of a geom or a flex from which the parameters of contacts are mixed.
 pub(super) struct ContactMaterial {
     priority: i32,
     dim: usize,
@@ -287,8 +287,8 @@ fn dynamic(model: &Model, geom: [usize; 2]) -> GeomPair {
     }
 }
 
-/// Tells whether MuJoCo goes through trees of boxes to a pair that is not explicit, as it does where one of the bodies has several geoms, and then
-/// calls a routine that may take what is farther apart than the margin for nearer: the convex one, that for two boxes.
+/// Returns whether MuJoCo reaches a pair that is not explicit through trees of boxes, as it does if one of the bodies has several geoms, and then
+/// calls a routine that may accept geoms farther apart than the margin: the convex one, or the one for two boxes.
 fn midphase(model: &Model, [a, b]: [usize; 2]) -> bool {
     let geoms = |g: usize| model.body_geomnum[model.geom_bodyid[g]];
     let kinds = [model.geom_type[a], model.geom_type[b]];

@@ -10,8 +10,8 @@ use crate::math::Vec3;
 use crate::model::{GeomType, Model};
 use crate::state::{RESERVED_CONTACTS, State};
 
-/// Enlargement of boxes, m: more than rounding, so that the exact routines decide. The tolerance of the convex routines comes on top, as far as
-/// which they may find a contact where there is a gap.
+/// Enlargement of boxes, m: more than rounding, so that the exact routines decide. The tolerance of the convex routines is added, because they
+/// may find a contact across a gap of that size.
 const SLACK: f64 = 1e-7;
 
 /// The world box of a geom.
@@ -26,7 +26,7 @@ struct WorldBox {
     high: Vec3,
 }
 
-/// Contact detection, with the sorted order of the last step, which is nearly that of the next, and all working memory.
+/// Contact detection. It keeps the sorted order of the last step, which is nearly that of the next, and all working memory.
 #[derive(Clone, Debug)]
 pub struct Sweep {
     options: ContactOptions,
@@ -37,7 +37,7 @@ pub struct Sweep {
     fixed_known: bool,
     /// Those of `boxes` that move or are near something that does, in the same order.
     near: Vec<WorldBox>,
-    /// Pairs whose boxes overlap, by their places in the table, or, where there is none, by their order.
+    /// Pairs whose boxes overlap, by their index in the table or, without a table, by their order.
     candidates: Vec<u32>,
     untabulated: Vec<(PairOrder, [u32; 2])>,
     points: Vec<ContactPoint>,
@@ -171,7 +171,7 @@ impl Sweep {
         self.fixed_known = true;
     }
 
-    /// Fills `near`: what never moves counts where it overlaps the box around all that does.
+    /// Fills `near`: geoms that never move count if they overlap the box around all that do.
     #[inline(always)]
     fn select_near(&mut self) {
         let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);

@@ -80,7 +80,7 @@ impl BodyTrees {
         if edges[2] >= edges[axis] + EPS {
             axis = 2;
         }
-        // places that are equal but for rounding are made equal, so that the geoms' order decides: to compare them with a tolerance is no order,
+        // places that are equal up to rounding are made equal, so that the geoms' order decides: a comparison with a tolerance is not an order,
         // on which sorting may panic
         let sort = |leaves: &mut [Leaf]| {
             order::sort_by(leaves, |a, b| {
@@ -100,8 +100,9 @@ impl BodyTrees {
         self.node(high);
     }
 
-    /// Tells whether MuJoCo leaves out two geoms of a pair that is not explicit: a face of one of the boxes around them lies farther from the
-    /// other than their margin, or one of the boxes of two nodes on the way to them farther than any margin of both bodies.
+    /// Returns whether MuJoCo leaves out two geoms of a pair that is not explicit. It does if a face of one of the boxes around them lies
+    /// farther from the other than their margin, or if the same holds for the boxes of two nodes on the way to them and the largest margin of
+    /// both bodies.
     pub(super) fn apart<'a>(
         &self,
         a: &PlacedGeom<'a>,

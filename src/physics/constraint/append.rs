@@ -48,14 +48,14 @@ impl RowAppender<'_> {
         &mut self.efc.blocks[last]
     }
 
-    /// Gives the last block, of a contact, its friction.
+    /// Sets the friction of the last block, which is a contact.
     #[inline(always)]
     pub(super) fn cone(&mut self, mu: f64, friction: [f64; 5]) {
         self.block_mut().cone = self.efc.cones.len() as u32;
         self.efc.cones.push(ConeShape { mu, friction });
     }
 
-    /// Takes the last block back, before it has rows.
+    /// Removes the last block, which has no rows yet.
     #[inline(always)]
     pub(super) fn drop_block(&mut self) {
         let e = &mut *self.efc;

@@ -59,7 +59,8 @@ fn cone(rows: &mut RowAppender, s: &State, i: usize) -> bool {
     true
 }
 
-/// Gives the last block, of a contact with an elliptic cone or without friction, its rows; `diag` approximates the diagonal of `J M^-1 J'`.
+/// Appends the rows of the last block, a contact with an elliptic cone or without friction. `diag` approximates the diagonal of
+/// `J M^-1 J'`.
 #[inline(always)]
 pub(super) fn cone_parameters(rows: &mut RowAppender, c: &Contact, diag: f64) {
     let model = rows.model;
@@ -115,7 +116,8 @@ fn pyramid(rows: &mut RowAppender, s: &State, i: usize) -> bool {
     true
 }
 
-/// Gives the last block, of a contact with a pyramidal cone, its rows; `diag` approximates the diagonal of `J M^-1 J'` along the normal.
+/// Appends the rows of the last block, a contact with a pyramidal cone. `diag` approximates the diagonal of `J M^-1 J'` along the
+/// normal.
 #[inline(always)]
 pub(super) fn pyramid_parameters(rows: &mut RowAppender, c: &Contact, diag: f64) {
     let model = rows.model;
@@ -155,7 +157,7 @@ pub(super) fn pyramid_lines(c: &Contact, translation: &[Lanes; 3], rotation: &[L
     }
 }
 
-/// Tells whether MuJoCo gives rows to a contact of two bodies that no degree of freedom moves relative to each other. Such
+/// Returns whether MuJoCo gives rows to a contact of two bodies that no degree of freedom moves relative to each other. Such
 /// rows move nothing, but the contact has a force; sparse, it drops those that no degree of freedom moves at all.
 fn keeps_without_effect(model: &Model, bodies: [usize; 2]) -> bool {
     let fixed = bodies.iter().all(|&b| model.body_weldid[b] == 0);

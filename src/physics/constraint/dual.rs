@@ -20,7 +20,7 @@ use crate::vectorize::vectorized;
 mod matrix;
 mod noslip;
 
-/// A change of forces that would raise the cost by more than this is taken back.
+/// A change of forces that would raise the cost by more than this is undone.
 const RISE: f64 = 1e-10;
 
 /// Most rows of an elliptic cone.
@@ -46,7 +46,7 @@ pub struct DualSolver {
     /// Four rows (nv), and half of `M^-1` times each.
     sides: Vec<Four>,
     columns: Vec<Four>,
-    /// Where those have numbers, with these divided by the inertia that the degree of freedom feels.
+    /// The degrees of freedom with nonzero numbers in them, with these numbers divided by the inertia that the degree of freedom feels.
     support: Vec<(usize, Four)>,
     /// The degrees of freedom between which the half of each row has its numbers.
     reaches: Vec<Range<usize>>,
@@ -148,7 +148,7 @@ impl DualSolver {
         self.gradient.resize(self.stride, 0.0);
     }
 
-    /// Takes note of the change of the force of a row.
+    /// Records the change of the force of a row.
     #[inline(always)]
     fn shift(&mut self, row: usize, moved: f64) {
         let column = &self.a[row * self.stride..(row + 1) * self.stride];
@@ -241,7 +241,7 @@ impl DualSolver {
         change
     }
 
-    /// Takes note of the changes of forces from `first` on.
+    /// Records the changes of forces from `first` on.
     #[inline(always)]
     fn follow(&mut self, first: usize, force: &[f64], old: &[f64]) {
         for (r, (force, old)) in force.iter().zip(old).enumerate() {
@@ -348,7 +348,7 @@ mod tests {
         }
     }
 
-    /// Lets a box lie on a slope for a while; returns how far it went, and its state.
+    /// Leaves a box on a slope for a while; returns how far it slid, and its state.
     fn slide(option: &str) -> (f64, State) {
         let text = format!(
             "<mujoco><option gravity='3 0 -9.81' {option}/><worldbody><geom type='plane' size='9 9 1'/>

@@ -165,7 +165,7 @@ fn connect_equality(rows: &mut RowAppender, s: &State, id: usize, [body1, body2]
     hold(rows, s, id, [body1, body2], &sub(point1, point2));
 }
 
-/// Gives the last block its rows, which hold two bodies: those of translation first, then those of rotation.
+/// Appends the rows of the last block, which hold two bodies together: translation first, then rotation.
 #[inline(always)]
 fn hold(rows: &mut RowAppender, s: &State, id: usize, [body1, body2]: [usize; 2], error: &[f64]) {
     let model = rows.model;

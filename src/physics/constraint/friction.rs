@@ -61,7 +61,7 @@ impl Quadratic {
         x
     }
 
-    /// Returns the lower triangle of Cholesky's factors of `A + multiplier`; nothing where that is singular by MuJoCo's measures:
+    /// Returns the lower triangle of Cholesky's factors of `A + multiplier`; nothing if it is singular by MuJoCo's measures:
     /// determinants of two and three rows, pivots of more.
     fn factor(&self, multiplier: f64) -> Option<[[f64; DIRECTIONS]; DIRECTIONS]> {
         let n = self.n;

@@ -20,8 +20,8 @@ const MAXIMP: f64 = 0.9999;
 /// The values that hold where a `solref` mixes the two ways of giving it.
 const DEFAULT_SOLREF: [f64; 2] = [0.02, 1.0];
 
-/// Tells whether a `solref` is neither zero nor mixed, that is, positive and not positive: MuJoCo takes such a
-/// `solreffriction` for one that was not given.
+/// Returns whether a `solref` is neither zero nor mixed, that is, positive and not positive: MuJoCo treats such a
+/// `solreffriction` as not given.
 #[inline(always)]
 pub(super) fn is_solref(solref: [f64; 2]) -> bool {
     solref != [0.0; 2] && (solref[0] > 0.0) == (solref[1] > 0.0)

@@ -40,8 +40,8 @@ impl LineSearch<'_> {
 
     /// Finds the step length at which the derivative vanishes to within `tolerance`, from a first guess.
     ///
-    /// This is Newton's method on the derivative (which is monotone), kept inside a bracket, which is halved where the method goes on to swing
-    /// between its ends.
+    /// This is Newton's method on the derivative (which is monotone), kept inside a bracket, which is halved where the method continues to
+    /// swing between its ends.
     #[inline(always)]
     pub(super) fn minimise(&self, guess: f64, tolerance: f64, iterations: usize) -> f64 {
         let (mut low, mut high) = (0.0, f64::INFINITY);

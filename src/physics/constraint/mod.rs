@@ -65,7 +65,7 @@ pub enum ConstraintType {
 }
 
 impl ConstraintType {
-    /// Tells whether it is dry friction, which has no position.
+    /// Returns whether it is dry friction, which has no position.
     pub fn is_friction(self) -> bool {
         matches!(self, Self::FrictionDof | Self::FrictionTendon)
     }

@@ -168,7 +168,7 @@ impl NewtonSolver {
         island.start(topology, warm, efc)
     }
 
-    /// Tells whether an island with a gradient of this length needs no step: the Hessian exceeds the inertia, so its steps are bounded
+    /// Returns whether an island with a gradient of this length needs no step: the Hessian exceeds the inertia, so its steps are bounded
     /// by the inertia's inverse.
     #[inline(always)]
     fn rests(&self, topology: &Topology, s: &State, length: f64) -> bool {
@@ -268,7 +268,7 @@ fn step_length(model: &Model, island: &Island, along: &AlongSearch, scale: f64) 
 /// Part of the constraint forces by which they may miss the balance where the solver stops because the cost is level.
 const BALANCED: f64 = 1e-6;
 
-/// Computes the forces of a contact or weld that nothing can move: those that its rows ask for at no acceleration.
+/// Computes the forces of a contact or weld that nothing can move: those of its rows at zero acceleration.
 fn push_alone(b: &Block, efc: &mut Efc) {
     if b.kind == ConstraintType::ContactElliptic {
         let mut cone = FrictionCone::new(b, efc);
@@ -287,12 +287,11 @@ fn push_alone(b: &Block, efc: &mut Efc) {
     }
 }
 
-/// Numbers of iterations below this are taken for a wish to stop early. Newton's method and its line search hardly ever
-/// need as many.
+/// A limit of iterations below this counts as a wish to stop early. Newton's method and its line search hardly ever need so many.
 const FEW_ITERATIONS: usize = 20;
 
-/// Tells whether a model may stop the solver before it converges, as conjugate gradients do. Then all trees are solved as one island,
-/// those without constraints too, as they start from the last acceleration, and searched as MuJoCo does it: so it stops where MuJoCo
+/// Returns whether a model may stop the solver before it converges, as conjugate gradients do. Then all trees are solved as one island,
+/// those without constraints too, as they start from the last acceleration, and searched as in MuJoCo, so the solver stops where MuJoCo
 /// stops.
 fn cut_off(model: &Model) -> bool {
     model.opt.solver == SolverType::Cg

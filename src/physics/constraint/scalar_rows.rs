@@ -29,7 +29,7 @@ pub(super) struct ScalarRows {
     pub(super) row: [u32; 4],
 }
 
-/// Four rows that are not there.
+/// Four missing rows.
 pub(super) const NO_ROWS: ScalarRows = ScalarRows {
     d: [0.0; 4],
     r: [0.0; 4],

@@ -109,8 +109,8 @@ impl AxisSearch<'_> {
         Some(())
     }
 
-    /// Tests the edges of one box across those of the other, a little behind where they are no better than a face; `None`
-    /// if a pair keeps the boxes apart.
+    /// Tests the edges of one box across those of the other, with a small penalty where they are no better than a face;
+    /// `None` if a pair separates the boxes.
     #[inline(always)]
     fn edges(&mut self) -> Option<()> {
         let p21 = self.relative.second_from_first;
@@ -141,7 +141,7 @@ impl AxisSearch<'_> {
                 if overlap < -self.margin {
                     return None;
                 }
-                // where an edge axis is a face axis but for rounding, the face wins: its points lie all around the area
+                // where an edge axis is a face axis up to rounding, the face wins: its points lie all around the area
                 // of contact, those of edges near one corner of it
                 if overlap < self.least * (1.0 - 1e-12) {
                     self.least = overlap;

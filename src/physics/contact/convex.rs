@@ -100,8 +100,8 @@ struct ConvexPair<'a, 'g> {
 }
 
 impl ConvexPair<'_, '_> {
-    /// Finds the contact of a sphere or capsule, which is all that is near its `core`: from the distance of the core, which
-    /// is exact, or, where the core is inside the other shape, from the overlap of the `whole`.
+    /// Finds the contact of a sphere or capsule, the set of points near its `core`: from the exact distance of the core, or, if the core is inside
+    /// the other shape, from the overlap of the `whole`.
     #[inline(always)]
     fn rounded<O: Support>(&mut self, core: impl Support, whole: impl Support, other: O) -> Option<BareContact> {
         let core = MinkowskiDifference { a: core, b: other };
@@ -197,7 +197,7 @@ fn shallow<A: Support, B: Support>(
     CoreContact::Known(touch(closest.distance - radius, surface, closest.b, margin))
 }
 
-/// Finds the overlap of two shapes, by GJK and EPA; `Some(None)` where they overlap and EPA finds no depth, which is a contact all the same.
+/// Finds the overlap of two shapes, by GJK and EPA; `Some(None)` if they overlap and EPA finds no depth, which is still a contact.
 fn deep<A: Support, B: Support>(
     shape: &MinkowskiDifference<A, B>,
     a: &PlacedGeom,

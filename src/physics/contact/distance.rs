@@ -20,9 +20,9 @@ pub struct GeomDistance {
     pub to: Vec3,
 }
 
-/// Measures the distance of two geoms as far as it is below `most`, m; `points` is working memory. Planes have no distance from planes.
+/// Measures the distance of two geoms if it is below `most`, m; `points` is working memory. Planes have no distance from planes.
 ///
-/// Where GJK and EPA measure it, MuJoCo has the points in the order of the types of the geoms, whichever is asked for first.
+/// Where GJK and EPA measure it, MuJoCo returns the points in the order of the types of the geoms, whichever is given first.
 #[doc(alias = "mj_geomDistance")]
 pub fn distance(
     first: &PlacedGeom,
@@ -77,7 +77,7 @@ fn mesh<'g>(geom: &PlacedGeom<'g>) -> Option<MeshShape<'g>> {
     geom.mesh.map(|mesh| MeshShape::new(geom, mesh, 0.0))
 }
 
-/// Measures by contacts, with a margin of all that counts.
+/// Measures by contacts, with the largest relevant distance as margin.
 fn of_contacts(
     a: &PlacedGeom,
     b: &PlacedGeom,
@@ -126,7 +126,7 @@ impl DistanceSearch<'_, '_> {
         }
     }
 
-    /// Measures from a sphere or capsule, which is all that is near its `core`.
+    /// Measures from a sphere or capsule, the set of points near its `core`.
     fn rounded(&mut self, core: &dyn Support, whole: &dyn Support, other: &dyn Support) -> GeomDistance {
         let (core, radius) = (MinkowskiDifference { a: core, b: other }, self.a.size[0]);
         let limits = self.limits(radius);

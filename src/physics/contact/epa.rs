@@ -85,7 +85,7 @@ impl<A: Support, B: Support> PolytopeExpansion<'_, A, B> {
         }
     }
 
-    /// Starts anew from a triangle of the polytope.
+    /// Restarts from a triangle of the polytope.
     fn restart(&mut self, triangle: [u16; 3]) -> Option<()> {
         let mut simplex = Simplex::default();
         for (slot, vertex) in triangle.into_iter().enumerate() {

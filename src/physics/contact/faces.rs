@@ -13,7 +13,7 @@ const PARALLEL_FACES: f64 = 0.99999872;
 const PARALLEL_EDGE: f64 = 0.00159999931;
 /// The most corners of a polygon, and polygons of a vertex, that count (`mjMAX_POLYVERT`).
 const MAX_CORNERS: usize = 150;
-/// The most contacts: of more corners those are kept whose quadrilateral is the greatest.
+/// The most contacts. Of more corners, those of the greatest quadrilateral are kept.
 const MAX_CONTACTS: usize = 4;
 
 /// Buffers for finding the faces and edges of a multi-contact (multiccd) search.
@@ -72,8 +72,8 @@ impl ClosestFeature {
     }
 }
 
-/// Finds the points between two polytopes: on the second, each with the same step to the first. `None` where no faces are parallel, nor
-/// a face and an edge, or where nothing is left of them: then the contact that EPA found stays the only one.
+/// Finds the points between two polytopes: on the second, each with the same step to the first. `None` if no faces, or face and edge, are
+/// parallel, or if clipping leaves nothing: then the contact that EPA found stays the only one.
 pub(super) fn clip<'s>(
     a: &PlacedGeom,
     b: &PlacedGeom,
@@ -181,8 +181,8 @@ impl MulticcdScratch {
     }
 }
 
-/// Finds four corners of a convex polygon with a great area between them: each goes on as long as that grows, while the first goes around
-/// once.
+/// Finds four corners of a convex polygon with a great area between them. The first corner goes around once; the others advance as long as the
+/// area grows.
 fn greatest(polygon: &[Vec3]) -> [usize; 4] {
     let count = polygon.len();
     let next = |k: usize| if k + 1 == count { 0 } else { k + 1 };
@@ -225,7 +225,7 @@ fn step(
     let mut moved = *at;
     moved[corner] = next(moved[corner]);
     let size = area(moved);
-    // so that numbers that are none end the search
+    // so that NaN ends the search
     let grows = size > *most;
     if grows {
         (*at, *most) = (moved, size);
@@ -240,7 +240,7 @@ struct Polyhedron<'a> {
 }
 
 impl<'a> Polyhedron<'a> {
-    /// Takes a box, or a mesh with polygons.
+    /// Creates one from a box, or from a mesh with polygons.
     fn new(geom: &'a PlacedGeom<'a>) -> Option<Self> {
         let mesh = match geom.kind {
             GeomType::Box => None,
@@ -369,7 +369,7 @@ impl<'a> Polyhedron<'a> {
         }
     }
 
-    /// Gives the corners of a face, clockwise from outside, or the ends of an edge that begins at `from`.
+    /// Writes the corners of a face, clockwise from outside, or the ends of an edge that begins at `from`.
     fn corners(&self, of: CandidateSource, from: Vec3, out: &mut Vec<Vec3>) {
         out.clear();
         match (of, self.mesh) {

@@ -16,7 +16,7 @@ pub struct FlexPart {
 }
 
 impl FlexPart {
-    /// Makes a part of the points (m) of a vertex or an element, of which the first four count, and a radius (m).
+    /// Makes a part from a radius (m) and the points (m) of a vertex or an element; the first four count.
     pub fn new(points: impl Iterator<Item = Vec3>, radius: f64) -> Self {
         let mut part = Self {
             points: [[0.0; 3]; 4],

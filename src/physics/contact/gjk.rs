@@ -87,7 +87,7 @@ pub(super) fn gjk<A: Support, B: Support>(
 struct GjkSearch {
     /// Point of the difference nearest to the origin so far.
     nearest: Vec3,
-    /// Weights of the vertices of which that point consists.
+    /// Weights of the vertices that make up that point.
     weights: [f64; 4],
     /// Number of those vertices.
     count: usize,
@@ -158,7 +158,7 @@ impl GjkSearch {
 #[inline(always)]
 fn towards_origin(point: Vec3) -> (bool, Vec3) {
     let length2 = dot(point, point);
-    // NaN ends here as well, so that no support is asked for along it
+    // NaN ends here as well, so that it never becomes the direction of a support
     let at_origin = length2 <= MINVAL * MINVAL || length2.is_nan();
     let dir = if at_origin {
         [-1.0, 0.0, 0.0]
@@ -169,7 +169,7 @@ fn towards_origin(point: Vec3) -> (bool, Vec3) {
 }
 
 impl GjkLimits {
-    /// Returns whether the distance is asked for, and not only whether the shapes overlap.
+    /// Returns whether the distance is needed, and not only whether the shapes overlap.
     #[inline(always)]
     fn wants_distance(&self) -> bool {
         self.cutoff > 0.0
@@ -185,8 +185,8 @@ impl GjkLimits {
         }
     }
 
-    /// Returns whether the plane through the newest vertex across the direction from the nearest point keeps the shapes
-    /// apart, as far as the search needs to know.
+    /// Returns whether the plane through the newest vertex across the direction from the nearest point separates the
+    /// shapes by enough to end the search.
     #[inline(always)]
     fn separates(&self, nearest: Vec3, newest: Vec3) -> bool {
         // the newest vertex is the farthest towards the origin: if it is still on this side of the origin, all are. Its

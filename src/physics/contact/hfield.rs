@@ -35,7 +35,7 @@ impl Support for Prism {
 }
 
 impl Prism {
-    /// Goes on to the next corner of a row of triangles.
+    /// Advances to the next corner of a row of triangles.
     fn push(&mut self, x: f64, y: f64, z: f64) {
         let base = self.corners[2][2];
         self.corners.copy_within(1..3, 0);

@@ -12,7 +12,7 @@ use crate::model::{Mesh, MeshHull};
 const CLIMBED: usize = 10;
 /// The most contacts of a plane and a mesh.
 const PLANE_CONTACTS: usize = 3;
-/// How far the others are from the first, in bounding radii.
+/// Least distance of the other contacts from the first, in bounding radii.
 const PLANE_SPREAD: f64 = 0.3;
 
 /// The height of a vertex along a direction.
@@ -175,7 +175,7 @@ pub(super) fn plane_fitted(a: &PlacedGeom, b: &PlacedGeom, mesh: &Mesh, margin: 
     }
 }
 
-/// Appends contacts of the first vertices that are below the plane and no nearer than `reach` to the contact that is there.
+/// Appends contacts of the first vertices that are below the plane and at least `reach` from the existing contact.
 fn more(
     a: &PlacedGeom,
     b: &PlacedGeom,

@@ -250,7 +250,7 @@ pub fn bounding_test(a: &PlacedGeom, radius_a: f64, b: &PlacedGeom, radius_b: f6
     !apart
 }
 
-/// Tells whether contacts of two kinds of geoms, in any order, come from the routine for all convex shapes (MuJoCo's `mjc_Convex`).
+/// Returns whether contacts of two kinds of geoms, in any order, come from the routine for all convex shapes (MuJoCo's `mjc_Convex`).
 pub fn needs_convex(a: GeomType, b: GeomType) -> bool {
     use GeomType::{Box, Capsule, Cylinder, Ellipsoid, HField, Mesh, Sphere};
     matches!(

@@ -11,7 +11,7 @@ use super::triangle::nearest;
 use super::{dot, sub};
 use crate::math::{Vec3, add, cross, scale};
 
-/// Steps after which a search is given up that rounding errors lead in a circle, in which libccd would not end.
+/// Limit on the steps of a search: rounding errors can lead it in a circle, in which libccd would never end.
 const ENDLESS: usize = 10_000;
 
 /// The overlap of two shapes.
@@ -28,9 +28,9 @@ pub(super) struct Penetration {
 /// Limits that end the search for the surface.
 #[derive(Clone, Copy)]
 pub(super) struct MprLimits {
-    /// How near the portal has to be to the surface, m.
+    /// Distance from the surface at which a portal is near enough, m.
     pub(super) tolerance: f64,
-    /// Number of times that the portal is moved once the origin is behind it.
+    /// Limit on the moves of the portal once the origin is behind it.
     pub(super) iterations: usize,
 }
 
@@ -66,13 +66,13 @@ pub(super) fn mpr(
     }
 }
 
-/// Tells whether a height is not below zero, but for rounding errors.
+/// Returns whether a height is at least zero, up to rounding errors.
 #[inline(always)]
 fn reaches(height: f64) -> bool {
     is_zero(height) || height > 0.0
 }
 
-/// Tells whether a height is below zero, and not by rounding errors alone.
+/// Returns whether a height is below zero by more than rounding errors.
 #[inline(always)]
 fn below(height: f64) -> bool {
     !is_zero(height) && height < 0.0
@@ -94,7 +94,7 @@ fn volume(a: Vec3, b: Vec3, c: Vec3) -> f64 {
 enum PortalStart {
     /// The shapes are apart.
     Outside,
-    /// The first support point is on the ray: there is no need for a portal.
+    /// The first support point is on the ray, so no portal is needed.
     OnRay,
     /// The ray goes through the portal.
     Through,
@@ -222,7 +222,7 @@ impl Portal<'_> {
         })
     }
 
-    /// Tells whether a support in the direction of the portal is hardly farther than the portal.
+    /// Returns whether a support in the direction of the portal is hardly farther than the portal.
     fn on_surface(&self, vertex: &Vertex, dir: Vec3, tolerance: f64) -> bool {
         let height = dot(vertex.point, dir);
         let [_, a, b, c] = self.points().map(|point| height - dot(point, dir));

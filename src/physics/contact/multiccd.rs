@@ -9,7 +9,7 @@ use crate::model::GeomType;
 /// Half of the angle by which geoms are tilted against each other: cosine and sine of 0.0005 rad.
 const COS: f64 = 0.9999998750000026;
 const SIN: f64 = 0.0004999999791666669;
-/// How far contacts are apart, in bounding radii of the smaller geom.
+/// Least distance between contacts, in bounding radii of the smaller geom.
 const APART: f64 = 1e-3;
 
 /// Appends the contacts of two convex geoms.
@@ -54,8 +54,8 @@ fn between(point: Vec3, step: Vec3, dist: f64) -> Option<BareContact> {
     })
 }
 
-/// Looks for more contacts than the one that is there: tilts the geoms against each other about its two tangents, to either side, and takes
-/// those that are elsewhere, with its distance.
+/// Looks for further contacts: tilts the geoms against each other about the two tangents of the first contact, to either side, and adds
+/// contacts at other places, with the distance of the first.
 #[cold]
 fn tilted(
     a: &PlacedGeom,

@@ -96,7 +96,7 @@ impl Polytope {
         (self.vertices.len() - 1) as u16
     }
 
-    /// Appends a vertex of a simplex: its point is formed anew from its two sources.
+    /// Appends a vertex of a simplex, with its point recomputed from its two sources.
     pub(super) fn add_simplex_vertex(&mut self, vertex: &Vertex) -> u16 {
         let point = sub(vertex.a, vertex.b);
         self.add_vertex(Vertex { point, ..*vertex })

@@ -8,7 +8,8 @@ pub(super) trait Support {
     /// Returns the farthest point in the unit direction `dir`.
     fn support(&self, dir: Vec3) -> Vec3;
 
-    /// Tells whether it is the hull of some points: between two such shapes MuJoCo looks for the distance to the last bit.
+    /// Returns whether it is the hull of finitely many points: between two such shapes MuJoCo computes the distance to the last
+    /// bit.
     fn discrete(&self) -> bool {
         false
     }
@@ -43,7 +44,7 @@ impl<'a> Pose<'a> {
         }
     }
 
-    /// Tells whether it is not grown, which rounds its corners.
+    /// Returns whether its corners are sharp: growing a shape rounds them.
     pub(super) fn sharp(&self) -> bool {
         self.grown == 0.0
     }

@@ -3,13 +3,13 @@
 /// The greatest number that libccd takes for zero (`CCD_EPS`).
 pub(super) const EPS: f64 = f64::EPSILON;
 
-/// Tells whether a number is zero but for rounding errors.
+/// Returns whether a number is zero up to rounding errors.
 #[inline(always)]
 pub(super) fn is_zero(x: f64) -> bool {
     x.abs() < EPS
 }
 
-/// Tells whether two numbers are equal but for rounding errors.
+/// Returns whether two numbers are equal up to rounding errors.
 pub(super) fn equal(a: f64, b: f64) -> bool {
     let apart = (a - b).abs();
     let greater = if b.abs() > a.abs() { b.abs() } else { a.abs() };

@@ -19,7 +19,7 @@ pub fn rate(model: &Model, actuator: usize, act: f64, ctrl: f64) -> f64 {
     }
 }
 
-/// Returns an activation after a time step in which its rate starts as given, within its limits.
+/// Returns an activation after a time step, clamped to its limits. `rate` is its rate at the start of the step.
 #[doc(alias = "mj_nextActivation")]
 pub fn next(model: &Model, actuator: usize, act: f64, rate: f64) -> f64 {
     let h = model.opt.timestep;
@@ -136,7 +136,7 @@ mod tests {
         );
     }
 
-    /// A copy of what decides how a run goes on holds the activations.
+    /// A copy of the dynamic state includes the activations.
     fn continues(engine: &mut impl Engine) {
         let mut state = engine.new_state();
         state.ctrl = vec![0.5, 1.0, 1.0, -1.0, 1.0];

@@ -20,7 +20,7 @@ pub fn fwd_actuation(model: &Model, topology: &Topology, bodies: &mut Articulate
     let acting = if model.opt.flags.actuation { model.nu() } else { 0 };
     s.actuator_force[acting..].fill(0.0);
     for i in 0..acting {
-        // muscles take the place of motors; a servo beside them is a servo still
+        // muscles take the place of motors; a servo among them remains a servo
         let muscle = s.muscle_torque.get(i).copied();
         let muscle = muscle.filter(|_| model.actuator_biastype[i] == BiasType::None);
         let gear = if muscle.is_some() {

@@ -67,7 +67,7 @@ struct FixedBody {
 /// A degree of freedom of an articulated body.
 #[derive(Clone, Copy, Debug, Default)]
 struct ArticulatedDof {
-    /// Force of a unit acceleration of it alone.
+    /// Force of a unit acceleration of only this degree of freedom.
     unit_force: [DampingPair; 6],
     /// Inverse of the inertia that it feels.
     inverse: DampingPair,
@@ -286,8 +286,8 @@ fn unit_force(inertia: &[DampingPair; 21], axis: &Spatial, extra: DampingPair) -
     (force, felt)
 }
 
-/// The same along a unit vector, in which only row `row` is 1: it picks a column. Products with zero are left out, which have no effect but on the sign of
-/// a zero: adding to zero has it, too.
+/// The same along a unit vector that is 1 in row `row` only, so it picks a column. Products with zero are left out: they affect only the sign of a
+/// zero, and so does adding to zero.
 #[inline(always)]
 fn unit_force_along(inertia: &[DampingPair; 21], row: usize, extra: DampingPair) -> ([DampingPair; 6], DampingPair) {
     let force = std::array::from_fn(|i| {
@@ -298,8 +298,8 @@ fn unit_force_along(inertia: &[DampingPair; 21], row: usize, extra: DampingPair)
     (force, [extra[0] + a, extra[1] + b])
 }
 
-/// Lets an articulated body move along an axis of which the force and the inertia are given: takes out of its inertia what that motion feels, in the rows and
-/// columns `left` that are still asked for.
+/// Frees an articulated body to move along an axis with the given force and inertia: removes from its inertia what that motion feels, in the rows and
+/// columns `left` that are still needed.
 #[inline(always)]
 fn release(
     inertia: &mut [DampingPair; 21],

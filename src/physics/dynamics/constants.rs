@@ -105,8 +105,8 @@ fn connect_anchors(model: &Arrays, s: &State) -> Vec<(usize, Vec3)> {
     connections.collect()
 }
 
-/// Largest inverse weight of a degree of freedom, times its inertia, of a model that is taken. It is 1 where the others hold
-/// still on their own, and grows with the condition of the inertia; beyond this it consists of rounding errors.
+/// Largest accepted product of a degree of freedom's inverse weight and inertia. The product is 1 if the others hold still
+/// on their own, and grows with the condition of the inertia. Beyond this limit it consists of rounding errors.
 pub const MAX_WEIGHT: f64 = 1e13;
 
 /// Computes inverse weights: the mean acceleration per unit force at `qpos0`, that is, the diagonal of `J M^-1 J'`, averaged
@@ -172,7 +172,7 @@ impl<'a> InverseWeights<'a> {
                 }
                 _ => {
                     let (own, body) = (self.of(&[(d, 1.0)]), self.model.jnt_bodyid[j]);
-                    // MuJoCo's is whatever the armature; slides along one axis stay what a singular inertia makes of them
+                    // MuJoCo's does not depend on the armature; slides along one axis keep the result of a singular inertia
                     let sound = own > 0.0 && own * self.model.body_mass[body] < MAX_WEIGHT;
                     weights[d] = if sound && slides_alone(self.model, body) {
                         1.0 / self.model.body_mass[body]
@@ -301,7 +301,7 @@ fn statistics(model: &Arrays, s: &State, dof_m0: &[f64]) -> Statistic {
         _ => sizes(model, s)[1..].iter().map(|v| v.max(1e-5)).sum::<f64>() / others,
     };
     let (low, high) = bounds(model, s);
-    // MuJoCo's own extent stays where nothing is beside anything else along x
+    // MuJoCo's own extent stays if no two things are next to each other along x
     let extent = if high[0] > low[0] {
         (0..3).map(|k| high[k] - low[k]).fold(1e-5, f64::max)
     } else {

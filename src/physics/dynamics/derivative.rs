@@ -127,8 +127,8 @@ impl VelocityDerivative {
         out.add_square(topology, &self.entries, slope);
     }
 
-    /// Takes off the derivative of Coriolis and centrifugal forces: the recursive Newton-Euler algorithm, differentiated by one
-    /// coordinate after another. Each moves the bodies below it only.
+    /// Subtracts the derivative of Coriolis and centrifugal forces: the recursive Newton-Euler algorithm, differentiated by one coordinate after
+    /// another. Each coordinate moves only the bodies below it.
     fn bias(&mut self, model: &Model, topology: &Topology, s: &State, out: &mut TreeMatrix) {
         for values in [&mut self.velocity, &mut self.acc, &mut self.force] {
             values.resize(model.nbody(), [0.0; 6]);

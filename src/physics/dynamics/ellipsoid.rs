@@ -1,5 +1,5 @@
-//! Forces of a medium on geoms that stand for ellipsoids ("ellipsoidal model" in MuJoCo's documentation): added mass, drag, lift, the
-//! Magnus effect; and their derivatives by velocities.
+//! Forces of a medium on geoms approximated by ellipsoids ("ellipsoidal model" in MuJoCo's documentation): added mass, drag, lift,
+//! the Magnus effect; and their derivatives by velocities.
 
 use std::f64::consts::PI;
 
@@ -29,7 +29,7 @@ struct FluidGeom {
     added: [Vec3; 2],
 }
 
-/// Tells whether the medium acts on the geoms of a body, not on the body as a whole.
+/// Returns whether the medium acts on the geoms of a body, not on the body as a whole.
 pub(super) fn swims(model: &Model, b: usize) -> bool {
     let geoms = model.body_geomadr[b]..model.body_geomadr[b] + model.body_geomnum[b];
     model.geom_fluid[geoms].iter().any(|fluid| fluid[0] > 0.0)
@@ -59,7 +59,7 @@ pub(super) fn swim(model: &Model, s: &mut State, b: usize) {
     }
 }
 
-/// Adds the derivatives of these forces by `qvel` to a matrix, symmetric ones where `symmetric`. `rows` is working memory.
+/// Adds the derivatives of these forces by `qvel` to a matrix, made symmetric if `symmetric` is set. `rows` is working memory.
 #[doc(alias = "mjd_ellipsoidFluid")]
 pub(super) fn swim_slopes(
     model: &Model,
@@ -98,7 +98,7 @@ pub(super) fn swim_slopes(
     }
 }
 
-/// Returns the semi-axes of the ellipsoid that stands for a shape, m.
+/// Returns the semi-axes of the ellipsoid that approximates a shape, m.
 fn semi_axes(kind: GeomType, size: Vec3) -> Vec3 {
     match kind {
         GeomType::Sphere => [size[0]; 3],

@@ -79,7 +79,7 @@ fn box_of(s: &State, b: usize) -> Vec3 {
     [side(y, z, x), side(x, z, y), side(x, y, z)]
 }
 
-/// Returns the torque, N m, and the force, N, of a medium on a box, along the axes of which it turns, rad/s, and moves, m/s.
+/// Returns the torque, N m, and the force, N, of a medium on a box that turns (rad/s) and moves (m/s) along its axes.
 fn resistance(size: Vec3, turning: Vec3, moving: Vec3, density: f64, viscosity: f64) -> (Vec3, Vec3) {
     let (mut torque, mut force) = ([0.0; 3], [0.0; 3]);
     if viscosity > 0.0 {
@@ -98,8 +98,8 @@ fn resistance(size: Vec3, turning: Vec3, moving: Vec3, density: f64, viscosity: 
     (torque, force)
 }
 
-/// Computes `qfrc_gravcomp`, which holds up the part of the weight of each body that is compensated, and adds it to `qfrc_passive`, but
-/// for joints whose actuators do it.
+/// Computes `qfrc_gravcomp`, which carries the compensated part of each body's weight, and adds it to `qfrc_passive`, except for joints
+/// whose actuators carry it.
 #[doc(alias = "mj_gravcomp")]
 pub(super) fn gravity_compensation(model: &Model, s: &mut State) {
     // MuJoCo 3.3.0 counts the positive ones: without any the others hold nothing, either

@@ -85,7 +85,7 @@ pub struct RungeKutta {
     act_dot: Vec<f64>,
 }
 
-/// How far the evaluations after the first are from the start: each follows the slope of the one before it.
+/// Times of the evaluations after the first, in time steps. Each follows the slope of the one before it.
 const STAGES: [f64; 3] = [0.5, 0.5, 1.0];
 /// The weights of the slopes in the step.
 const WEIGHTS: [f64; 4] = [1.0 / 6.0, 1.0 / 3.0, 1.0 / 3.0, 1.0 / 6.0];
@@ -94,8 +94,8 @@ impl RungeKutta {
     /// Advances `qpos, qvel, time` from a state that `evaluate` has computed already. `evaluate` computes accelerations from
     /// positions and velocities.
     ///
-    /// As in MuJoCo, all that `evaluate` computes is that of the last evaluation afterwards: it leaves the sensors, and what they read, alone, so
-    /// that these stay those of the start.
+    /// As in MuJoCo, everything that `evaluate` computes is afterwards that of the last evaluation. It does not change the sensors and what they
+    /// read, so that these stay those of the start.
     #[doc(alias = "mj_RungeKutta")]
     pub fn advance<E>(
         &mut self,

@@ -27,7 +27,7 @@ pub fn kinematics(model: &Arrays, s: &mut State) {
         if b > 0 {
             body(model, s, b);
         }
-        // borrowed field by field, so that what is placed can be written beside it
+        // borrowed field by field, so that the poses can be written at the same time
         let frame = BodyFrames {
             pos: &s.xpos[b],
             quat: &s.xquat[b],

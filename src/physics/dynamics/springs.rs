@@ -30,8 +30,8 @@ pub(super) fn bias(model: &Arrays, topology: &Topology, s: &State, actuator: usi
     bias
 }
 
-/// Returns stiffness of the joints and damping of the degrees of freedom: as given, else those that give a joint alone the time
-/// constant and the damping ratio of its `springdamper`.
+/// Returns stiffness of the joints and damping of the degrees of freedom: as given, or those with which a joint on its own has the
+/// time constant and the damping ratio of its `springdamper`.
 pub(super) fn springs(model: &Arrays, dof_invweight0: &[f64]) -> (Vec<f64>, Vec<f64>) {
     let (mut stiffness, mut damping) = (model.jnt_stiffness.clone(), model.dof_damping.clone());
     for (j, &[timeconst, ratio]) in model.jnt_springdamper.iter().enumerate() {

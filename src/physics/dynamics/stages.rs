@@ -1,5 +1,5 @@
-//! Parts of a step for those who want them once. A step has all of its parts in one function; here each is a function of its own, so that
-//! programs have them only once more.
+//! Parts of a step as single functions. A step inlines all of its parts into one function; these versions are compiled once, so programs
+//! contain each part only once more.
 
 use super::{Articulated, BiasScratch, CompositeInertia, Damping};
 use crate::model::{Arrays, Model};
@@ -34,7 +34,7 @@ pub fn update(bodies: &mut Articulated, model: &Arrays, s: &State, composite: &C
     bodies.update(model, s, composite);
 }
 
-/// Computes `cacc, cfrc_ext, cfrc_int` of a state of which all else is computed.
+/// Computes `cacc, cfrc_ext, cfrc_int` of a state whose other quantities are computed.
 #[doc(alias = "mj_rnePostConstraint")]
 #[inline(never)]
 pub fn rne_post_constraint(model: &Model, s: &mut State, double_weld_torque: bool) {

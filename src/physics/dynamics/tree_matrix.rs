@@ -3,7 +3,8 @@
 use crate::tiles::Tile;
 use crate::topology::Topology;
 
-/// A matrix (nv, nv) that is zero but for pairs of a degree of freedom and one of its ancestors, on both sides of the diagonal.
+/// A matrix (nv, nv) that is zero except for pairs of a degree of freedom and one of its ancestors, on both sides of the
+/// diagonal.
 #[derive(Clone, Debug, Default)]
 pub(super) struct TreeMatrix {
     /// For each degree of freedom its row, over its ancestors and itself.
@@ -62,7 +63,7 @@ impl TreeMatrix {
         }
     }
 
-    /// Sets row and column `dof` to zero over its ancestors, but for the diagonal.
+    /// Sets row and column `dof` to zero over its ancestors, except for the diagonal.
     pub fn keep_diagonal(&mut self, topology: &Topology, dof: usize) {
         let start = topology.chain_start(dof);
         let above = start..start + topology.dof_chain(dof).len() - 1;

@@ -46,7 +46,7 @@ pub fn com_vel(model: &Model, s: &mut State) {
 pub struct BiasScratch {
     acc: Vec<Spatial>,
     force: Vec<Spatial>,
-    /// Wrench on each body (nbody) that its velocity alone asks for: `cvel x I cvel`.
+    /// Wrench on each body (nbody) due to its velocity: `cvel x I cvel`.
     pub gyroscopic: Vec<Spatial>,
     /// Elastic forces on the vertices of a flex, N.
     flex: Vec<Vec3>,
@@ -62,7 +62,7 @@ impl BiasScratch {
     }
 }
 
-/// Returns the wrench that a velocity alone asks for.
+/// Returns the wrench due to a velocity.
 #[inline(always)]
 fn turning(cinert: &Inertia, cvel: &Spatial) -> Spatial {
     cross_force(cvel, &inertia_mul(cinert, cvel))

@@ -109,7 +109,7 @@ fn plane([a, b]: [Vec3; 2], cylinder: bool) -> [Vec3; 2] {
     [first, unit(cross(normal, first)).0]
 }
 
-/// Tells whether two segments meet.
+/// Returns whether two segments meet.
 fn meet([p1, p2]: [Vec2; 2], [p3, p4]: [Vec2; 2]) -> bool {
     let (u, v, w) = (sub2(p2, p1), sub2(p4, p3), sub2(p1, p3));
     let det = v[1] * u[0] - v[0] * u[1];

@@ -217,7 +217,7 @@ impl RapierBodies {
         Ok(())
     }
 
-    /// Gives each multibody its final degrees of freedom, the armature of the model and no damping.
+    /// Sets the final degrees of freedom of each multibody, the armature of the model and no damping.
     fn settle(&mut self, model: &Model, sets: &mut RapierSets) {
         for tree in &mut self.trees {
             let Some(link) = sets.multibody_joints.rigid_body_link(tree.root).copied() else {
@@ -277,7 +277,7 @@ impl RapierBodies {
         (handle == collider).then_some(geom)
     }
 
-    /// Hands positions, velocities and all forces but those of constraints to Rapier.
+    /// Passes positions, velocities and all forces except those of constraints to Rapier.
     ///
     /// Rapier treats Coriolis forces in a way of its own, from the velocities it is given. It is given none: they enter
     /// as the force that produces them within a time step, `M qvel / h`, beside `qfrc_smooth`, which has our Coriolis

@@ -192,7 +192,7 @@ impl Bridge {
         self.advance(s)
     }
 
-    /// Computes all that precedes the solver from `qpos`, `qvel` and `ctrl`, and loads it into the world.
+    /// Computes everything up to the solver from `qpos`, `qvel` and `ctrl`, and loads it into the world.
     ///
     /// # Errors
     /// Fails if the state does not fit the model or is not finite.

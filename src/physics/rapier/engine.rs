@@ -124,7 +124,7 @@ impl RapierEngine {
         &self.bridge
     }
 
-    /// Tells the probe, if there is one, that a stage begins, or with `None` that the step is done.
+    /// Tells the probe, if any, that a stage begins, or with `None` that the step is done.
     fn mark(&mut self, stage: Option<Stage>) {
         if let Some(p) = &mut self.probe {
             p(stage);

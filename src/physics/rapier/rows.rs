@@ -196,7 +196,7 @@ impl RapierRows {
     }
 }
 
-/// Takes the couplings and motors of the last step off the joints.
+/// Removes the couplings and motors of the last step from the joints.
 fn clear_joints(rig: &RapierBodies, sets: &mut RapierSets) {
     for tree in rig.trees.iter().filter(|t| t.articulated) {
         if let Some(id) = sets.multibody_joints.rigid_body_link(tree.root).copied()

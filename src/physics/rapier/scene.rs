@@ -49,8 +49,8 @@ pub struct SceneContact {
     pub normal: Vec3,
 }
 
-/// A mirror of a model in Rapier's sets, for ray casts, shape queries and debug rendering, which
-/// `Blueprint::rapier_scene` of babybench makes of a state.
+/// A mirror of a model in Rapier's sets, for ray casts, shape queries and debug rendering. `Blueprint::rapier_scene` of
+/// babybench makes one from a state.
 ///
 /// [`RapierScene::sync`] gives it the poses of a state; nothing flows back. Bodies are kinematic (fixed where nothing
 /// moves them); `user_data` of a body and of a collider is the id of the body and of the geom. Rapier's collision pipeline
@@ -218,7 +218,7 @@ impl RapierScene {
         scene
     }
 
-    /// Takes over the body poses of a state, which are those of the start of its last step, and the sizes of its geoms, and
+    /// Copies the body poses of a state, which are those of the start of its last step, and the sizes of its geoms, and
     /// detects collisions among them.
     ///
     /// # Errors
@@ -252,7 +252,7 @@ impl RapierScene {
         Ok(())
     }
 
-    /// Brings Rapier's broad and narrow phase up to date with bodies and colliders.
+    /// Updates Rapier's broad and narrow phase with bodies and colliders.
     fn detect(&mut self) {
         self.pipeline.step(
             0.0,
@@ -321,7 +321,7 @@ impl RapierScene {
         self.collider_handle.get(geom).copied()
     }
 
-    /// Returns the id of the geom that a collider stands for, as queries report them.
+    /// Returns the id of the geom of a collider, as queries report it.
     pub fn geom_of(&self, collider: ColliderHandle) -> Option<usize> {
         self.colliders.get(collider).map(|c| c.user_data as usize)
     }

@@ -79,7 +79,7 @@ pub(super) fn flexedges(model: &Arrays, topology: &Topology) -> DofRows {
     }))
 }
 
-/// Returns the degrees of freedom on which each actuator acts that has a moment of its own: on a ball joint, a free
+/// Returns the degrees of freedom on which each actuator with a moment of its own acts: on a ball joint, a free
 /// joint, a site, a slider-crank, contacts.
 pub(super) fn actuators(model: &Arrays, topology: &Topology) -> DofRows {
     let chain = |site: usize| topology.body_chain(model.site_bodyid[site]);

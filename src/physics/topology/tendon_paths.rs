@@ -22,7 +22,7 @@ pub struct TendonPaths {
 enum PathElement {
     /// A pulley.
     Pulley,
-    /// From one site to another: a stretch, by its place.
+    /// A segment from one site to another, by its index.
     Sites(usize),
 }
 
@@ -32,10 +32,10 @@ pub struct PathSegment {
     pub sites: [usize; 2],
     /// Factor of its length.
     pub share: f64,
-    /// From one to the other.
+    /// The straight line from one to the other.
     pub straight: StraightSegment,
     pub between: SegmentKind,
-    /// Whether the path ends at the second site, or goes on behind a pulley.
+    /// Whether the path ends at the second site or continues after a pulley.
     pub ends: bool,
 }
 
@@ -174,7 +174,7 @@ impl TendonPaths {
         })
     }
 
-    /// Returns the degrees of freedom that move the first end of a span alone, and those that move the second one alone.
+    /// Returns the degrees of freedom that move only the first end of a span, and those that move only the second.
     #[inline]
     pub fn apart(&self, span: &StraightSegment) -> [&[PathDof]; 2] {
         [&self.moved[span.first.clone()], &self.moved[span.second.clone()]]

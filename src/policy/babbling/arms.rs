@@ -8,7 +8,7 @@ use crate::spaces::BoxSpace;
 #[derive(Clone, Debug)]
 pub(super) struct Arms {
     palms: [usize; 2],
-    /// For each geom whether it belongs to a part with skin, which feels that it is touched.
+    /// Whether each geom belongs to a part with skin, which feels touches.
     skinned: Vec<Option<usize>>,
     /// For each arm the numbers of an action that move it.
     actions: [Vec<usize>; 2],

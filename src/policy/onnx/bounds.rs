@@ -58,7 +58,7 @@ fn check_attribute(node: &[u8], attribute: &[u8]) -> Result<(), String> {
     Ok(())
 }
 
-/// Checks the sizes of what an operator makes.
+/// Checks the sizes of an operator's output.
 fn check_shape(node: &[u8], sizes: &[f64]) -> Result<(), String> {
     if product(sizes.iter().copied()) > MOST {
         return Err(format!(

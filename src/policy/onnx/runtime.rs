@@ -6,7 +6,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Once;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-/// Graphs of more operators are planned on a stack of their own.
+/// Graphs with more operators are planned on a separate stack.
 pub(super) const SHALLOW: usize = 1000;
 /// Maximum number of operators of a graph: [`STACK`] holds them in a row, four times over in a release build.
 pub(super) const MOST: usize = if cfg!(target_arch = "wasm32") { SHALLOW } else { 10_000 };
@@ -49,7 +49,7 @@ pub(super) fn call<T: Send>(operators: usize, work: impl FnOnce() -> T + Send) -
     })
 }
 
-/// Lets panics of the runtime pass without a text; all others go to the hook that was there.
+/// Silences panics of the runtime; all others go to the previous hook.
 fn silence() {
     static ONCE: Once = Once::new();
     if std::thread::panicking() {

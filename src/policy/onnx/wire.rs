@@ -1,4 +1,4 @@
-//! The bytes of a model: protobuf, as far as the runtime reads it (`onnx.proto`).
+//! The bytes of a model: the parts of protobuf that the runtime reads (`onnx.proto`).
 //!
 //! The runtime believes lengths, waits for ever for the end of a number that is too long, and reads messages in messages by
 //! recursion. So a model is looked through before the runtime gets it.

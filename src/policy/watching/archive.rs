@@ -19,7 +19,7 @@ const TOGETHER: f64 = 0.6;
 pub(super) struct Trial {
     pub(super) posture: Vec<f64>,
     pub(super) seen: [f64; HANDS],
-    /// Number of trials, of which `seen` is the mean.
+    /// Number of trials that `seen` averages.
     times: u32,
 }
 

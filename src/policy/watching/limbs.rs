@@ -15,12 +15,12 @@ const DAMPING: f64 = 0.15;
 const SWING: f64 = 0.5;
 const RATE: f64 = 4.0;
 
-/// The effect of a number of an action.
+/// The part that one number of an action moves.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum DrivenPart {
     /// The arm of a hand: the joints above its palm.
     Arm(usize),
-    /// The wrist of a hand, which moves the palm alone.
+    /// The wrist of a hand, which moves only the palm.
     Wrist(usize),
     /// The head.
     Head,

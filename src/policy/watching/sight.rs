@@ -14,7 +14,7 @@ const CLEAR: f32 = 2.0;
 const TURN: f64 = 0.01;
 /// Part of a picture that has to move for a hand to be there.
 const AREA: f32 = 0.01;
-/// Widths of the middle of a picture, in half heights of it: of the fovea, and of what is near it, with the weight of the latter.
+/// Widths of the middle of a picture, in half heights of the picture: the fovea, and the area near it with its weight.
 const FOVEA: f32 = 0.25;
 const NEAR: [f32; 2] = [0.7, 0.1];
 /// Time between two pictures that are compared, s.
@@ -109,7 +109,7 @@ impl ImageChanges {
         self.counts[hand] += 1;
     }
 
-    /// Returns how much of what moves with each hand, and not with the other, is in the middle of the eyes, 0 to 1.
+    /// Returns, for each hand, the share of what moves with that hand only that lies in the middle of the eyes, 0 to 1.
     pub(super) fn found(&self) -> [f64; HANDS] {
         let pictures: usize = self.weights.iter().map(Vec::len).sum();
         let mean = |hand: usize, k: usize| self.changes[hand * pictures + k] / self.counts[hand].max(1) as f32;

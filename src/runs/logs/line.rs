@@ -64,7 +64,7 @@ impl<'n> LineFormatter<'n> {
     fn name(&mut self, out: &mut Vec<u8>, geom: usize, names: &PartNames) {
         match self.quoted.get(geom) {
             Some(name) => out.extend_from_slice(name.as_bytes()),
-            // only a few names are kept, whatever numbers a log has
+            // only a few names are kept, even if a log has more numbers
             None if geom < KEPT => {
                 let more = self.quoted.len()..=geom;
                 self.quoted.extend(more.map(|geom| json::text(&&*names.get(geom))));

@@ -34,9 +34,9 @@ impl KnownFile {
         }
     }
 
-    /// Returns whether a file is unchanged, as far as its metadata show.
+    /// Returns whether a file is unchanged according to its metadata.
     fn is(&self, meta: &Metadata) -> bool {
-        // if another program has changed the file, all lines are written anew
+        // if another program has changed the file, all lines are rewritten
         meta.is_file() && meta.len() == self.length && meta.modified().ok() == self.modified
     }
 }
@@ -48,7 +48,7 @@ struct ResumedRecords {
     first: Info,
 }
 
-/// The known contents of the `.jsonl` file beside a training log.
+/// The known contents of the `.jsonl` file next to a training log.
 #[derive(Debug, Default)]
 pub(super) struct JsonLines {
     /// For the names of touched parts.

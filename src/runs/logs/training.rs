@@ -135,12 +135,12 @@ impl TrainingLog {
         Ok(log)
     }
 
-    /// Resumes a log as [`TrainingLog::resume`] does, with the names of the touched parts. If the log has no lines beside it, like the
+    /// Resumes a log as [`TrainingLog::resume`] does, with the names of the touched parts. If the log has no file of lines, like the
     /// kit's logs, they are written while it is read.
     pub(crate) fn resume_with(config: &Config, names: Option<PartNames>) -> Result<Self, LogError> {
         let path = training_path(&config.save_dir);
         let beside = path.with_extension("jsonl");
-        // only if lines are missing beside a log are they all written, while its records are read anyway
+        // all lines are written only if a log has no file of lines, while its records are read anyway
         if !path.exists() || beside.exists() {
             return Ok(Self::resume(config)?.with_names(names));
         }

@@ -209,7 +209,7 @@ impl<'m> MotionTrajectory<'m> {
     fn frames(&self, time: f64) -> (usize, usize, f64) {
         let last = self.motion.frames() - 1;
         let at = (time * self.motion.rate()).clamp(0.0, last as f64);
-        // times beside a frame, by rounding, are that frame
+        // times that miss a frame only by rounding are that frame
         let near = at.round();
         if (at - near).abs() < 1e-6 {
             return (near as usize, near as usize, 0.0);

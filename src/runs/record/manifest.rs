@@ -84,7 +84,7 @@ pub struct EpisodeDescription {
     /// MIMo's age in months, if it was not that of the configuration; null for the original proportions.
     #[serde(default, skip_serializing_if = "Option::is_none", with = "other_age")]
     pub age: Option<Option<f64>>,
-    /// Whether the recorder was given up before the episode was ended: the end of what it recorded need not be the end of the episode.
+    /// Whether the record was written before the episode ended: its end may not be the end of the episode.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub unfinished: bool,
 }

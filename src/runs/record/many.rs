@@ -31,7 +31,7 @@ use crate::vector::{AutoresetMode, VectorEnv, VectorStep};
 pub struct VectorRecorder {
     /// The recorder of each environment.
     each: Vec<Recorder>,
-    /// For each environment whether its episode was running before the step, and how many numbers its generator had drawn.
+    /// For each environment, whether its episode was running before the step, and how many numbers its generator had drawn.
     before: Vec<Option<u64>>,
 }
 

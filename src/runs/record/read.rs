@@ -117,7 +117,7 @@ impl Record {
         Ok(env)
     }
 
-    /// Gives an environment the age and the changed numbers of an episode.
+    /// Sets the age and the changed numbers of an episode in an environment.
     fn become_of(&self, episode: u64, npz: &Npz, env: &mut Env) -> Result<(), RecordError> {
         let described = self.manifest.episodes.iter().find(|e| e.episode == episode);
         let age = described.and_then(|e| e.age).unwrap_or(self.manifest.configuration.age);

@@ -44,7 +44,7 @@ struct BehaviorRows {
     episode_return: Vec<f64>,
 }
 
-/// What the names of changed arrays of the model begin with.
+/// Prefix of the names of changed arrays of the model.
 pub(super) const MODEL: &str = "model.";
 
 /// An episode as it is recorded.
@@ -53,7 +53,7 @@ pub(super) struct EpisodeRows {
     dt: f64,
     columns: [usize; 3],
     snapshot: Vec<u8>,
-    /// What a program had changed of the model.
+    /// A program's changes of the model.
     changes: Vec<(&'static str, Vec<f64>)>,
     qpos0: Vec<f64>,
     qvel0: Vec<f64>,
@@ -180,7 +180,7 @@ impl EpisodeRows {
                 rows.extend(values);
             }
         }
-        // last, as it covers all that the step has left
+        // last, because it covers everything that the step has left
         self.checksum.push(checksum(env));
     }
 

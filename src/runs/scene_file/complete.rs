@@ -7,7 +7,7 @@ use crate::assets::AssetSource;
 use crate::limits::Limits;
 use crate::mjcf_loader::Tree;
 
-/// Folders beside the document: images, meshes and height fields, models.
+/// Folders next to the document: images, meshes and height fields, models.
 pub(super) const IMAGES: &str = "tex";
 const MESHES: &str = "mesh";
 const MODELS: &str = "models";

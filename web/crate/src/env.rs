@@ -18,7 +18,7 @@ use crate::js::{self, id, ids, list, object, optional};
 use crate::numbers::{of_state, place};
 use crate::scene;
 
-/// An environment, with what a page draws of it.
+/// An environment, with the data from which a page draws it.
 #[wasm_bindgen]
 pub struct Core {
     pub(crate) env: Env,
@@ -122,7 +122,7 @@ impl Core {
         entries.map(|entry| entry.field.to_string()).collect()
     }
 
-    /// Describes the entries of the observation that are there: property, Gymnasium's key, shape, number type and bounds.
+    /// Describes the entries of the current observation: property, Gymnasium's key, shape, number type and bounds.
     #[wasm_bindgen(js_name = observationSpace)]
     pub fn observation_space(&self) -> JsValue {
         let field = |key: &str| ObservationEntry::of_key(key).map_or_else(String::new, |entry| entry.field.to_string());
@@ -143,7 +143,7 @@ impl Core {
         self.env.blueprint().dt()
     }
 
-    /// Brings the views of the frame up to date: `poses`, `bodies`, `felt`, `contacts`, `worn`.
+    /// Updates the views of the frame: `poses`, `bodies`, `felt`, `contacts`, `worn`.
     pub fn update(&mut self) -> Result<(), JsValue> {
         let scenery = self.scenery()?;
         let touch = self.env.senses().touch();
@@ -404,7 +404,7 @@ impl Core {
         Ok(self.scenery.insert(scenery).clone())
     }
 
-    /// Takes the viewer out, made when it is first needed.
+    /// Removes and returns the viewer, which is made on first use.
     fn take_viewer(&mut self) -> Result<Viewer, JsValue> {
         let viewer = self.viewer.take().map(Ok);
         viewer.unwrap_or_else(|| Viewer::new(self.env.blueprint()).map_err(|e| js::env_error(&e)))

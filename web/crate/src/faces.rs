@@ -1,4 +1,5 @@
-//! The faces that are not in the module: their pictures are a tenth of what a first visit would fetch, and seldom shown.
+//! The faces that are not in the module: their pictures would be a tenth of the download of a first visit, and are
+//! seldom shown.
 
 use std::borrow::Cow;
 use std::cell::RefCell;
@@ -26,7 +27,7 @@ pub fn bring_face(name: &str, picture: Vec<u8>) -> Result<(), JsValue> {
     kept.map_err(js::error)
 }
 
-/// The pictures of faces as a source: one that was not brought yet is an error that says how to bring it.
+/// The pictures of faces as a source. A picture that was not added yet is an error that says how to add it.
 pub struct Faces;
 
 impl AssetSource for Faces {

@@ -10,8 +10,8 @@ use babybench::sensors::Touch;
 #[derive(Default)]
 pub struct Frame {
     skins: PosedSkins,
-    /// For each thing that is drawn (12): position, m, and rotation matrix, row by row, whose columns are as long as the thing
-    /// has grown since it was compiled.
+    /// For each drawable (12): position, m, and rotation matrix, row by row. The lengths of its columns are the factors by which
+    /// the drawable has grown since it was compiled.
     pub poses: Vec<f32>,
     /// For each body (7): position, m, and quaternion, w first.
     pub bodies: Vec<f32>,
@@ -24,7 +24,7 @@ pub struct Frame {
 }
 
 impl Frame {
-    /// Takes the poses at the start of the last physics step, and what was felt there.
+    /// Copies the poses at the start of the last physics step, and what was felt there.
     pub fn update(&mut self, model: &Model, scenery: &Scenery, s: &State, touch: Option<&Touch>) {
         self.poses.clear();
         let placed = Poses::from(s);

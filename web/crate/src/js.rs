@@ -49,7 +49,7 @@ pub fn error(error: impl std::fmt::Display) -> JsValue {
     js_sys::Error::new(&error.to_string()).into()
 }
 
-/// Makes an `Error`; that of a configuration also has `key`, `line` and `column`, where there are any.
+/// Makes an `Error`; one of a configuration also has `key`, `line` and `column`, if known.
 pub fn env_error(e: &EnvError) -> JsValue {
     match e {
         EnvError::Config(config) => config_error(config),

@@ -149,7 +149,7 @@ fn drawable(m: &Model, v: &Scenery, d: &Drawable) -> JsValue {
     ])
 }
 
-/// Returns the triangles of a mesh, with a number that is its alone.
+/// Returns the triangles of a mesh, with a unique number.
 fn mesh(number: usize, mesh: &Mesh) -> JsValue {
     let places: Vec<f32> = (0..mesh.x.len())
         .flat_map(|i| [mesh.x[i], mesh.y[i], mesh.z[i]])

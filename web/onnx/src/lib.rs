@@ -48,7 +48,7 @@ impl Model {
         Ok(())
     }
 
-    /// Matches the model's inputs with what is observed.
+    /// Matches the model's inputs with the observations.
     pub fn connect(&mut self) -> Result<(), JsValue> {
         let spaces: Vec<_> = self.senses.iter().map(|(space, _)| space.clone()).collect();
         self.policy.connect(&spaces).map_err(error)

@@ -3,7 +3,7 @@ import { capital, TASKS } from "./names.js";
 
 /** @typedef {import("./app.js").App} App */
 /**
- * What is said. What stays does so until it is closed; an alert takes the focus.
+ * The current announcement. What stays does so until it is closed; an alert takes the focus.
  * @typedef {{ text: string, bad?: boolean, stays?: boolean, alert?: boolean, actions?: [string, () => unknown][] }} Notice
  */
 
@@ -31,7 +31,7 @@ export const STATES = {
     const { recordings } = app;
     const again = () => recordings.last && recordings.replay(recordings.last);
     const verdict = same === null ? "" : same ? " It ends with the same bits." : " It ends elsewhere than the recording did: another version or configuration made it.";
-    return { text: `The replay is over: ${steps} steps.${verdict} Play goes on from here.`, stays: true, actions: [["Replay again", again]] };
+    return { text: `The replay is over: ${steps} steps.${verdict} Play continues from here.`, stays: true, actions: [["Replay again", again]] };
   },
 
   /** @param {App} app @param {import("./types").Score & { time: number, second?: boolean }} s */
@@ -40,7 +40,7 @@ export const STATES = {
     const task = TASKS[behavior];
     if (!task) {
       const score = value === null ? "" : ` with a score of ${(100 * value).toFixed(1)} %`;
-      return { text: `${who}The episode is complete after ${time.toFixed(1)} s${score}. MIMo goes on; Reset starts another episode.` };
+      return { text: `${who}The episode is complete after ${time.toFixed(1)} s${score}. MIMo continues; Reset starts another episode.` };
     }
     const end = success ? "the goal is reached" : failure ? "the goal is out of reach" : "the time is up";
     return { text: `${who}${task.title}: ${end} after ${time.toFixed(2)} s, with a return of ${(earned ?? 0).toFixed(1)}.`, stays: true, actions: [["Next episode", () => app.nextEpisode()]] };

@@ -15,7 +15,7 @@ import { World, WorldError } from "./world.js";
 /** @typedef {{ name: string, bytes: Uint8Array<ArrayBuffer>, url: string | null }} Network */
 /** @typedef {"scene" | "tick" | "state" | "play" | "notice" | "over" | "eyes" | "second eyes" | "tape" | "pull"} Event */
 
-/** Milliseconds between updates of numbers, faster than one reads. */
+/** Milliseconds between updates of numbers; faster than anyone reads them. */
 const TICK = 100;
 
 export class App {
@@ -97,7 +97,7 @@ export class App {
   }
 
   /**
-   * Shows a message to the person.
+   * Shows a message to the user.
    * @param {string} text
    * @param {boolean} [bad]
    */
@@ -168,7 +168,7 @@ export class App {
    * @param {Uint8Array<ArrayBuffer> | null} snapshot
    * @param {string} [yaml] the settings as a file, which may hold more than the page shows
    * @param {Uint8Array<ArrayBuffer> | null} [second] snapshot of the MIMo beside him
-   * @returns {Promise<boolean>} whether it was done: not if somebody would rather go on recording
+   * @returns {Promise<boolean>} whether it was done: not if the user chose to continue recording
    */
   async make(settings, snapshot, yaml, second) {
     if (!(await this.recordings.consent("This change"))) return false;
@@ -177,7 +177,7 @@ export class App {
   }
 
   /**
-   * Builds worlds one after the other, so that each starts from what those before it left.
+   * Builds worlds one after the other, so that each starts from the result of the previous ones.
    * @param {() => Promise<void>} work
    */
   inTurn(work) {
@@ -217,7 +217,7 @@ export class App {
   }
 
   /**
-   * Builds a world from these settings alone, without earlier ones.
+   * Builds a world from only these settings, without earlier ones.
    * @param {Settings} settings
    */
   begin(settings) {

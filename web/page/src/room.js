@@ -1,7 +1,7 @@
 // Custom rooms: the dropped files, and which of them is the scene.
 import { unzip } from "./zip.js";
 
-/** Most that the files of a room may have, bytes and files: the library reads no larger one. */
+/** Limits of a room, in bytes and files: the library reads no larger one. */
 const [MOST, COUNT] = [64 << 20, 2000];
 
 /** @typedef {Record<string, Uint8Array<ArrayBuffer>>} Files by path */
@@ -76,7 +76,7 @@ export async function readRoom(things) {
 }
 
 /**
- * Finds the scenes among files: documents that include MIMo, by way of others too, and that no other includes.
+ * Finds the scenes among files: documents that include MIMo, directly or through others, and that no other document includes.
  * @param {[string, Uint8Array<ArrayBuffer>][]} list
  * @returns {Room}
  */

@@ -1,4 +1,4 @@
-// The MIMo beside the first: his picture, and what differs.
+// The second MIMo: his picture, and what differs.
 import { $, el, say } from "./dom.js";
 import { unit } from "./delays.js";
 import { POLICIES } from "./panels/move.js";
@@ -8,7 +8,7 @@ import { Stage } from "./stage/stage.js";
 /** @typedef {import("./types").Scene} Scene */
 /** @typedef {import("./types").Moment} Moment */
 
-/** Looks at the pace, ten a second, after which a machine that is behind is too slow; and the share of the pace that is enough. */
+/** Checks of the pace, ten a second, after which a machine that is behind is too slow; and the share of the pace that is enough. */
 const [LOOKS, ENOUGH] = [40, 0.85];
 
 export class Second {
@@ -94,7 +94,7 @@ export class Second {
     say(this.scores[which], earned !== null ? `return ${earned.toFixed(1)}` : value !== null ? `${(100 * value).toFixed(1)} %` : "");
   }
 
-  /** Shows on each picture who it is. */
+  /** Labels each picture with its infant. */
   name() {
     const { app, scene } = this;
     const { twin, policy } = app.state;

@@ -47,7 +47,7 @@ export class Sharing {
     return sceneOf(state.settings) === null || !room ? null : room.files;
   }
 
-  /** A key that distinguishes states, whatever the camera. */
+  /** A key that distinguishes states but ignores the camera. */
   get key() {
     return JSON.stringify({ ...this.state, view: null });
   }
@@ -83,7 +83,7 @@ export class Sharing {
     return opened === "moment" || recording !== null;
   }
 
-  /** Opens what the address, or this entry of the history, has. */
+  /** Opens the contents of the address, or of this entry of the history. */
   async arrive() {
     if (/[#&]s=/.test(location.hash)) return this.open(location.hash);
     const kept = history.state;
@@ -146,7 +146,7 @@ export class Sharing {
   }
 
   /**
-   * Gets the network that moves a state: the link's, that of its address, or the one that is here. Without one MIMo babbles, and it is
+   * Gets the network that moves a state: the link's, that of its address, or the current one. Without one MIMo babbles, and it is
    * said what is missing.
    * @param {PageState} state
    * @param {Uint8Array<ArrayBuffer> | null} bytes
@@ -235,7 +235,7 @@ export class Sharing {
     const lacks = [];
     if (files && !held) lacks.push(`It does not hold the room ${state.settings.scene} (${(files.length / 1e3).toFixed(0)} kB): who opens it must drop that on the page before.`);
     if (packed && !fits) lacks.push(`It does not hold the network ${app.model?.name} (${(packed.length / 1e3).toFixed(0)} kB): who opens it must drop that file on the page, or you put it on a server and open this page with ?policy= and its address.`);
-    if (app.moment?.replay) lacks.push("A recording plays here, which the link does not hold: from this moment its policy goes on.");
+    if (app.moment?.replay) lacks.push("A recording plays here, which the link does not hold: from this moment its policy continues.");
     return { href, lacks: lacks.join(" ") };
   }
 

@@ -3,7 +3,7 @@
 /** @typedef {import("./types").PageState} PageState */
 /** @typedef {import("./types").PolicyName} PolicyName */
 
-/** Simulated seconds in a second, as one may choose. */
+/** The speeds to choose from, in simulated seconds per second. */
 export const SPEEDS = [0.1, 0.25, 0.5, 1, 2, 4, 16];
 /** @type {PolicyName[]} */
 const POLICIES = ["babbling", "random", "sine", "zero", "model"];

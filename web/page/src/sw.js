@@ -1,5 +1,5 @@
-// Caches the page's files, so that it opens without a network and fetches nothing twice, whatever the host's caching
-// headers. Files are identified by their contents: a rebuilt page has another table, and fetches what differs.
+// Caches the page's files, so that it opens without a network and fetches nothing twice, regardless of the host's
+// caching headers. Files are identified by their contents: a rebuilt page has another table, and fetches what differs.
 /// <reference lib="webworker" />
 const scope = /** @type {ServiceWorkerGlobalScope} */ (/** @type {unknown} */ (self));
 const CACHE = "babybench files";
@@ -20,7 +20,7 @@ async function hashOf(answer) {
 }
 
 /**
- * Gets a file: the one that is kept, the one that the browser has just fetched for the page, or the network's.
+ * Gets a file: from the cache, from what the browser has just fetched for the page, or from the network.
  * @param {string} name
  * @returns {Promise<Response>}
  */

@@ -55,7 +55,7 @@ export class World {
   /** Pings a busy worker that does not answer. */
   look() {
     const now = performance.now();
-    if (document.hidden) this.pinged &&= now; // nobody waits, and clocks of hidden pages are slow
+    if (document.hidden) this.pinged &&= now; // no user waits, and clocks of hidden pages are slow
     else if (!this.pinged) {
       if (now - this.heard < LOOK || (!this.waiting.size && !this.to.busy())) return;
       this.pinged = now;

@@ -44,7 +44,7 @@ fn part(name: &str, present: bool, meaning: &str) -> String {
     }
 }
 
-/// Returns the name and the version of the system, as far as it says them in a file.
+/// Returns the name and the version of the system, if a file of the system has them.
 fn system() -> String {
     let release = fs::read_to_string("/etc/os-release").unwrap_or_default();
     let name = value_of(&release, "PRETTY_NAME", '=').map(|name| name.trim_matches('"').to_owned());

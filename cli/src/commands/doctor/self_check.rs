@@ -8,9 +8,9 @@ use babybench::config::Example;
 use babybench::env::Checksum;
 use babybench::{Blueprint, Env};
 
-/// What `examples/checksum` prints: a configuration, random steps from seed 0, and the checksum after them.
+/// Output of `examples/checksum`: in each line a configuration, random steps from seed 0, and the checksum after them.
 const TABLE: &str = include_str!("checksums.txt");
-/// The longest time of the check: a slow machine compares as many lines as it can compute in it.
+/// Time limit of the check: a slow machine compares only the lines that it can compute in this time.
 const LONGEST: Duration = Duration::from_secs(10);
 
 /// The result of a self-check.
@@ -77,7 +77,7 @@ pub fn run() -> Result<Outcome, Box<dyn Error>> {
     for example in Example::ALL {
         let lines = lines_of(example.name)?;
         if lines.is_empty() {
-            return Err(format!("the table of checksums has no line about {}", example.name).into());
+            return Err(format!("the table of checksums has no line for {}", example.name).into());
         }
         outcome.lines += lines.len();
         let mut env = Blueprint::new(example.config()?)?.env()?;
@@ -109,7 +109,7 @@ pub fn run() -> Result<Outcome, Box<dyn Error>> {
     Ok(outcome)
 }
 
-/// Takes random steps, and returns whether there was time for all.
+/// Makes random steps, and returns whether there was time for all.
 fn walk(env: &mut Env, steps: usize, started: Instant) -> Result<bool, Box<dyn Error>> {
     let mut action = Vec::new();
     for _ in 0..steps {

@@ -17,7 +17,7 @@ struct EpisodeCounters {
     parts: Option<[usize; 2]>,
     /// Steps with a hand in view.
     counts: Option<[u64; 4]>,
-    /// The score of the episode alone, if its record has one.
+    /// The score of this episode, if its record has one.
     score: Option<f64>,
 }
 
@@ -198,7 +198,7 @@ fn evaluation_table(run: &RunContents, counted: &[EpisodeCounters]) -> Markup {
         @if touch && run.compat() == Compat::Reference && run.evaluations.len() > 1 {
             p.note {
                 "Under compat: reference the lists of touched parts go on from episode to episode: the table has those that were new in "
-                "each, and what an episode would score alone is not known but for the first."
+                "each, and only the first episode's own score is known."
             }
         }
     }

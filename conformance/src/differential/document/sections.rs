@@ -218,7 +218,7 @@ impl Writer<'_> {
         section
     }
 
-    /// Draws what an actuator acts on that is neither a joint nor a tendon; returns whether it does.
+    /// Draws an object for an actuator that acts on neither a joint nor a tendon; returns whether it has one.
     fn elsewhere(&mut self, node: &mut Node) -> bool {
         let body = self.bodies[self.dice.rng.usize(..self.bodies.len())].clone();
         if node.name == "adhesion" || node.name == "general" && self.dice.chance(0.08) {
@@ -243,7 +243,7 @@ impl Writer<'_> {
         true
     }
 
-    /// Gives an actuator the ranges and numbers that its kind must have, and takes off those that it may not have.
+    /// Sets the ranges and numbers that an actuator of its kind must have, and removes those that it may not have.
     pub(super) fn fit_actuator(&mut self, node: &mut Node, in_default: bool) {
         match node.name.as_str() {
             "damper" => {

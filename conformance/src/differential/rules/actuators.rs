@@ -112,7 +112,7 @@ pub(super) const MUSCLE: &[Rule] = &[
     ("fvmax", Drawn(0.3, |d| d.log(0.9, 2.0))),
 ];
 
-/// Writes one to ten parameters of an actuator, three of which have a meaning.
+/// Writes one to ten parameters of an actuator; three have a meaning.
 fn parameters(d: &mut Dice, size: f64) -> String {
     let n = d.pick(&[1, 2, 3, 3, 3, 10]);
     d.reals(n, size)

@@ -1,4 +1,4 @@
-//! Values of what refers to bodies, joints, geoms and sites.
+//! Values of elements that refer to bodies, joints, geoms and sites.
 
 use super::super::dice::{Dice, numbers};
 use super::How::{Drawn, Nothing, Placed, Word};

@@ -9,7 +9,7 @@ use super::super::offsets::{MODEL, MODEL_SIZES, OPTION, PARTS, STATISTIC};
 use super::{Simulation, array, count};
 
 impl Simulation {
-    /// Returns an array of the model, as numbers; `None` when mjModel has none of that name.
+    /// Returns an array of the model, as numbers; `None` if `mjModel` has no array of that name.
     pub fn model_array(&self, name: &str) -> Option<Vec<f64>> {
         let f = MODEL.iter().find(|f| f.name == name)?;
         let n = self.number(count(f.rows)) * self.number(count(f.cols));

@@ -1,4 +1,4 @@
-//! Takes over states, parameters and options of ours.
+//! Copies our states, parameters and options to MuJoCo.
 
 use std::ffi::c_int;
 
@@ -47,7 +47,7 @@ impl Simulation {
         self.disable(DISABLE_CONTACT, off);
     }
 
-    /// Takes over all that a step of ours depends on, switches and parameters included.
+    /// Copies everything that our step depends on, including switches and parameters.
     ///
     /// # Panics
     /// The state is of another model.
@@ -70,7 +70,7 @@ impl Simulation {
         self.set_gear(s.reference_gear());
     }
 
-    /// Takes over switches and parameters.
+    /// Copies switches and parameters.
     ///
     /// # Panics
     /// They are of another model.

@@ -10,7 +10,7 @@ from ..mimo_env import MIMoEnv
 
 
 class TaskMethods(MIMoEnv):
-    """A task without failure, without an end of its own, and without a goal, unless it says otherwise."""
+    """A task that by default has no failure, no end of its own and no goal."""
 
     def is_failure(self, achieved_goal: Any, desired_goal: Any) -> bool:
         """Returns False."""

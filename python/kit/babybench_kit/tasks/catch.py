@@ -144,11 +144,11 @@ class MIMoCatchEnv(TaskMethods):
         return np.flatnonzero(beside & (abs(contacts["force"][:, 0]) >= _LEAST_FORCE))
 
     def _in_contact(self) -> bool:
-        """Tells whether the arm touches the ball now."""
+        """Returns whether the arm touches the ball now."""
         return len(self._touching()) > 0
 
     def _currently_in_contact(self) -> bool:
-        """Tells whether the arm touched the ball at the end of the last step."""
+        """Returns whether the arm touched the ball at the end of the last step."""
         return self.in_contact_past[self.steps % self.steps_in_contact_for_success]
 
     def body_contact_reward(self) -> float:
@@ -156,7 +156,7 @@ class MIMoCatchEnv(TaskMethods):
         return len(self._touching()) / 10
 
     def _throw(self) -> None:
-        """Gives the ball another radius and mass."""
+        """Changes the ball's radius and mass."""
         self.ball_size = random.uniform(*self.size_limits)
         self.ball_mass = random.uniform(*self.mass_limits)
         inertia = 2 * self.ball_mass * self.ball_size**2 / 5
@@ -191,11 +191,11 @@ class MIMoCatchEnv(TaskMethods):
         return observation
 
     def is_success(self, achieved_goal: Any, desired_goal: Any) -> bool:
-        """Tells whether the ball was held all the time."""
+        """Returns whether the ball was held all the time."""
         return all(self.in_contact_past)
 
     def is_failure(self, achieved_goal: Any, desired_goal: Any) -> bool:
-        """Tells whether the ball is lost."""
+        """Returns whether the ball is lost."""
         ball, hand = (self._core.present.xpos[body] for body in (self.target_id, self.hand_id))
         return bool(ball[2] < hand[2] - _LOST[0] or np.linalg.norm(ball - hand) > _LOST[1])
 
@@ -222,7 +222,7 @@ class MIMoCatchEnv(TaskMethods):
         return self._get_obs()
 
     def _step_callback(self) -> None:
-        """Takes note of contact, turns head and eyes towards the ball, and changes the factors of the jitter."""
+        """Records contact, turns head and eyes towards the ball, and changes the factors of the jitter."""
         self.steps += 1
         self.in_contact_past[self.steps % self.steps_in_contact_for_success] = self._in_contact()
         self._tracking.look_at(self._core.present.xpos[self.target_id] + self.position_offset)

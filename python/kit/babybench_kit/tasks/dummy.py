@@ -23,7 +23,7 @@ TEST_XML = scene_path("test_scene.xml")
 
 
 class MIMoDummyEnv(TaskMethods):
-    """MIMo v1 with all senses beside two objects on a plane, without a goal or a reward.
+    """MIMo v1 with all senses next to two objects on a plane, without a goal or a reward.
 
     Args:
         model_path: The scene.
@@ -76,7 +76,7 @@ class MIMoDummyEnv(TaskMethods):
             print(f"action: {self.action_space.shape}")
 
     def touch_setup(self, touch_params: dict[str, Any]) -> None:
-        """Makes touch, and shows its sensors if that was asked for."""
+        """Makes touch, and shows its sensors if requested."""
         touch = self.touch = TrimeshTouch(self, touch_params=touch_params)
         if not self.show_sensors:
             return
@@ -91,7 +91,7 @@ class MIMoDummyEnv(TaskMethods):
         self.steps += 1
 
     def reset_model(self) -> Observation:
-        """Puts the scene at its start, and returns the observation."""
+        """Moves the scene to its start, and returns the observation."""
         self.set_state(self.init_qpos, self.init_qvel)
         return self._get_obs()
 

@@ -22,7 +22,7 @@ class HeadTracking:
     """The joints of head and eyes, as indices in ``qpos``."""
 
     def __init__(self, core: Core, free: tuple[str, ...] = (), straight: tuple[str, ...] = ()) -> None:
-        """Finds the joints; those in ``free`` are left alone.
+        """Finds the joints; those in ``free`` are not moved.
 
         With joints in ``straight``, which are held at zero, the distance of a point counts from the height of the eyes: MIMo 3.
         """

@@ -83,7 +83,7 @@ class MIMoVelocityMuscleTestV2Env(MIMoStaticMuscleTestEnv):
 
 
 class MIMoComplianceEnv(MIMoDummyEnv):
-    """A ball falls onto an outstretched arm of which only the shoulder gives way: MIMo v2."""
+    """A ball falls onto an outstretched arm that yields only at the shoulder: MIMo v2."""
 
     def __init__(
         self,

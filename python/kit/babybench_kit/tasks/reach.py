@@ -69,7 +69,7 @@ class MIMoReachEnv(TaskMethods):
         return _BONUS * bool(self.is_success(achieved_goal, desired_goal)) - distance
 
     def is_success(self, achieved_goal: Any, desired_goal: Any) -> bool:
-        """Tells whether the ball has moved."""
+        """Returns whether the ball has moved."""
         return bool(np.linalg.norm(self._position("target") - self.target_init_pos) > _MOVED)
 
     def reset_model(self) -> Observation:

@@ -103,11 +103,11 @@ class MIMoSelfBodyEnv(TaskMethods):
         return goal
 
     def is_success(self, achieved_goal: Any, desired_goal: Any) -> bool:
-        """Tells whether something is felt on the target."""
+        """Returns whether something is felt on the target."""
         return bool(np.max(self._felt()[self.target_geom]) > 0)
 
     def compute_reward(self, achieved_goal: Any, desired_goal: Any, info: dict[str, Any]) -> float:
-        """Returns the reward of what is touched."""
+        """Returns the reward of the current touches."""
         if info["is_success"]:
             return _FOUND
         felt = list(self._felt().values())

@@ -72,7 +72,7 @@ class MIMoStandupEnv(TaskMethods):
         return float(achieved_goal) - _SITTING - cost
 
     def is_success(self, achieved_goal: Any, desired_goal: Any) -> bool:
-        """Tells whether the head is as high as the goal."""
+        """Returns whether the head is as high as the goal."""
         return bool(achieved_goal >= desired_goal)
 
     def sample_goal(self) -> float:

@@ -24,7 +24,7 @@ def _late(history: list[_Item], item: _Item, delay: int) -> _Item:
 
 
 class MIMoEnv(mimo_env.MIMoEnv):
-    """MIMo 3 in a scene, with the senses and the actuation that the arguments ask for.
+    """MIMo 3 in a scene, with the senses and the actuation that the arguments request.
 
     Args:
         model_path: The scene: any MJCF document with MIMo.
@@ -113,7 +113,7 @@ class MIMoEnv(mimo_env.MIMoEnv):
         return _late(self._obs_history, observation, self.sensory_delay) if self.sensory_delay else observation
 
     def _reset_simulation(self) -> None:
-        """Forgets the past, also what was on its way, puts the actuators to rest, and samples a goal."""
+        """Forgets the past and delayed items, puts the actuators to rest, and samples a goal."""
         self._action_history.clear()
         self._obs_history.clear()
         super()._reset_simulation()

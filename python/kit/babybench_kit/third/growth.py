@@ -110,7 +110,7 @@ def _rows(names: Sequence[str], rows: NDArray[Any], prefix: str = "") -> dict[st
 def create_growth_scene(
     growth_params: Mapping[str, Any], path_scene: str | os.PathLike[str], long_format: bool = True
 ) -> NoReturn:
-    """Refuses: scenes grow by age.
+    """Raises an error: scenes grow by age.
 
     Raises:
         NotImplementedError: Always.

@@ -6,7 +6,7 @@ from typing import NoReturn
 
 
 def refuse(module: str, instead: str) -> NoReturn:
-    """Says what to use instead of a module.
+    """Raises an error that says what to use instead of a module.
 
     Raises:
         ImportError: Always.

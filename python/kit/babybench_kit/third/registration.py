@@ -14,7 +14,7 @@ IDS: dict[str, tuple[str, int | None]] = {**MIMO_IDS, "MIMoRollOver-v0": ("MIMoR
 
 
 def safe_register(id: str, **kwargs: Any) -> None:
-    """Registers an id with Gymnasium; one that is registered is left alone."""
+    """Registers an id with Gymnasium, unless it is registered already."""
     if id not in gym.envs.registry:
         gym.register(id=id, **kwargs)
 

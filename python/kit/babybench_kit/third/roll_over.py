@@ -83,14 +83,14 @@ class MIMoRollOverEnv(TaskMethods, MIMoEnv):
         self.init_position = self._core.read("qpos")
 
     def _settle(self, qpos: ArrayLike) -> None:
-        """Puts the scene at positions, and advances without action."""
+        """Moves the scene to positions, and advances without action."""
         self.set_state(qpos, np.zeros_like(self.init_qvel))
         self._set_action(np.zeros(self.action_space.shape or ()))
         for _ in range(_SETTLING):
             self._core.physics_step()
 
     def is_success(self, achieved_goal: Any, desired_goal: Any) -> bool:
-        """Tells whether MIMo has turned far enough."""
+        """Returns whether MIMo has turned far enough."""
         return bool(achieved_goal >= desired_goal)
 
     def sample_goal(self) -> float:

@@ -39,7 +39,7 @@ _NEAR = 0.5
 
 
 class MIMoDummyEnv(dummy.MIMoDummyEnv, MIMoEnv):
-    """MIMo v1 with all senses beside two objects on a plane, without a goal or a reward."""
+    """MIMo v1 with all senses next to two objects on a plane, without a goal or a reward."""
 
     def __init__(
         self,
@@ -301,7 +301,7 @@ class MIMoVelocityMuscleTestV2Env(MIMoStaticMuscleTestEnv):
 
 
 class MIMoComplianceEnv(muscle_test.MIMoComplianceEnv, MIMoDummyEnv):
-    """A ball falls onto an outstretched arm of which only the shoulder gives way: MIMo v2."""
+    """A ball falls onto an outstretched arm that yields only at the shoulder: MIMo v2."""
 
     def __init__(
         self,

@@ -29,11 +29,11 @@ _GROWN = 18.0
 _PARTS = 32
 """Places between two pixels."""
 _FOVEA = 10.0
-"""Strength of a fovea that is only asked for."""
+"""Strength of a fovea that is requested without a number."""
 
 
 class SimpleVision(senses.SimpleVision):
-    """A picture of each camera, with acuity and foveation where the parameters ask for them.
+    """A picture of each camera, with acuity and foveation where the parameters request them.
 
     ``acuity`` is ``False``, ``True`` for the age of the environment (18 months without one) or an age in months; ``foveation`` is
     ``False``, ``True`` for the strength 10, or a strength. Acuity takes ``fovy``, degrees, for the field of view.
@@ -63,11 +63,11 @@ class SimpleVision(senses.SimpleVision):
 
     @property
     def _as_known(self) -> bool:
-        """Tells whether pictures are the engine's."""
+        """Returns whether pictures are the engine's."""
         return type(self) is SimpleVision and not self.acuity_functions and not self.foveation
 
     def _seen(self, picture: NDArray[np.uint8], camera: str) -> NDArray[np.uint8]:
-        """Returns what is seen of a camera's picture."""
+        """Returns the visible part of a camera's picture."""
         if camera in self.acuity_functions:
             picture = self._apply_acuity(picture, camera)
         if camera in self.foveation:

@@ -224,7 +224,7 @@ fn mesh(context: &Context, comp: &FlexComp, source: &dyn AssetSource, left: usiz
     Ok(shape)
 }
 
-/// Tells which of a number of points are fixed to the parent.
+/// Returns which points are fixed to the parent.
 fn pinned(comp: &FlexComp, points: usize, count: [usize; 3]) -> Result<Vec<bool>, &'static str> {
     let mut pinned = vec![comp.rigid; points];
     if comp.rigid {

@@ -1,6 +1,6 @@
 //! The surface of a flex, the layers below it, and the pairs of elements and vertices across inner sides.
 
-/// What follows from how elements hang together.
+/// The surface, the layers and the inner pairs of a flex, which follow from the connectivity of its elements.
 pub(super) struct Shell {
     /// Vertices of the fragments of the surface, each counterclockwise from outside.
     pub fragments: Vec<usize>,

@@ -16,7 +16,7 @@ pub(crate) fn fit(kind: GeomType, mesh: &Mesh, to_bounds: bool, scale: f64) -> O
     let (size, pos) = if to_bounds {
         let [low, high] = mesh.bounds;
         let centre: Vec3 = std::array::from_fn(|k| (low[k] + high[k]) / 2.0);
-        // the centre is in the axes of the mesh and the position in those of the document; MuJoCo adds them all the same
+        // the centre is in the axes of the mesh and the position in those of the document; MuJoCo adds them anyway
         (around(kind, mesh, centre)?, add(mesh.pos, centre))
     } else {
         (like_box(kind, mesh.inertia_box)?, mesh.pos)

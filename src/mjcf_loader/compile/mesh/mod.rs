@@ -52,8 +52,8 @@ pub(super) fn compile_meshes(
     Ok(())
 }
 
-/// Tells which meshes need a hull: those of geoms that may touch others by their masks. Geoms that touch in a `<pair>` alone do so by all
-/// their vertices, as in MuJoCo.
+/// Returns which meshes need a hull: those of geoms whose masks let them touch others. Geoms that touch only in a `<pair>` do so with all their
+/// vertices, as in MuJoCo.
 fn touching(context: &Context, document: &TypedDocument, ids: &Ids) -> Result<Vec<bool>, LoadError> {
     let mut touching = vec![false; document.meshes.len()];
     for geom in document.bodies.iter().flat_map(|body| &body.geoms) {
@@ -145,13 +145,13 @@ fn compile(
     })
 }
 
-/// Tells whether the indices of all corners are below `count`, the number of normals or texture coordinates.
+/// Returns whether the indices of all corners are below `count`, the number of normals or texture coordinates.
 fn exist(corners: &[[u32; 3]], count: usize) -> bool {
     let mut all = corners.as_flattened().iter();
     all.all(|&i| i == model::Mesh::NONE || (i as usize) < count)
 }
 
-/// Builds the convex hull, of at most `most` corners: in Qhull's order, as MuJoCo has it, or where Qhull would end with an error, in that of the
+/// Builds the convex hull, with at most `most` corners, in Qhull's order as in MuJoCo. Where Qhull would fail, the order is that of the
 /// vertices.
 fn hull(vert: &[[f32; 3]], most: Option<usize>) -> Result<MeshHull, &'static str> {
     let points: Vec<Vec3> = vert.iter().map(|v| v.map(f64::from)).collect();

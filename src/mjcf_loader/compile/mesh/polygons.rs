@@ -35,8 +35,8 @@ pub(super) fn turn(polygons: &mut MeshPolygons, vert: &[[f32; 3]]) {
         .collect();
 }
 
-/// Returns the normal of a triangle. One without an area has MuJoCo's: infinite, or close to it, so that such triangles are on a plane of their own,
-/// the first.
+/// Returns the normal of a triangle. One without an area has MuJoCo's normal, which is infinite or close to it, so such triangles form a plane of
+/// their own, the first one.
 fn normal(corners: [u32; 3], vert: &[[f32; 3]]) -> Vec3 {
     let [a, b, c] = corners.map(|k| vert[k as usize].map(f64::from));
     let (normal, twice_area) = unit(cross(sub(b, a), sub(c, a)));
@@ -51,7 +51,7 @@ fn normal(corners: [u32; 3], vert: &[[f32; 3]]) -> Vec3 {
 #[derive(Default)]
 struct Edges {
     all: Vec<Option<Edge>>,
-    /// Where in `all` an edge is: in several places where triangles are there twice.
+    /// Indices of an edge in `all`: several if a triangle occurs twice.
     at: HashMap<[u32; 2], VecDeque<usize>>,
     /// For each triangle one before it that it hangs together with by edges, or itself.
     island: Vec<usize>,
@@ -255,7 +255,7 @@ impl Planes {
         }
     }
 
-    /// Lets the child on the other side take the place of a node, which goes down to `side`.
+    /// Rotates a node down to `side`: its child on the other side takes its place.
     fn rotate(&mut self, k: usize, side: usize) {
         let Some(up) = self.node[k].child[1 - side] else { return };
         let inner = self.node[up].child[side];

@@ -65,7 +65,7 @@ pub(super) fn read(
     Ok(surface)
 }
 
-/// Tells whether a format is written as those of files are: a kind, a slash, a name.
+/// Returns whether a format is written as those of files are: a kind, a slash, a name.
 fn is_content_type(text: &str) -> bool {
     text.split_once('/')
         .is_some_and(|(kind, name)| !kind.is_empty() && !name.is_empty())

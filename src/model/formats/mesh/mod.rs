@@ -28,7 +28,7 @@ pub enum MeshFormat {
 }
 
 impl MeshFormat {
-    /// Returns the format that the ending of a file's name stands for.
+    /// Returns the format for the extension of a file's name.
     pub fn of_path(path: &str) -> Option<Self> {
         let (_, ending) = path.rsplit_once('.')?;
         match ending.to_ascii_lowercase().as_str() {
@@ -54,7 +54,7 @@ impl MeshFormat {
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[non_exhaustive]
 pub enum MeshError {
-    /// The file ends before its content does, or goes on after it.
+    /// The file is shorter or longer than its content.
     #[error("the file has {found} bytes where its header asks for {expected}")]
     Length {
         /// Bytes that the header asks for.
@@ -102,7 +102,7 @@ pub enum MeshError {
     /// Too few numbers.
     #[error("line {0} has too few numbers")]
     Few(usize),
-    /// Polygons of so many corners that cutting them into triangles takes too long.
+    /// Polygons have so many corners that cutting them into triangles takes too long.
     #[error("line {0} and those before it have polygons of too many corners; cut them into triangles")]
     Polygons(usize),
     /// An index that names nothing.
@@ -122,7 +122,7 @@ pub enum MeshError {
         what: &'static str,
         /// The index, from 0.
         index: u32,
-        /// How many there are.
+        /// Their number.
         count: usize,
     },
     /// More than the limit allows.
@@ -163,7 +163,7 @@ impl Triangles {
         Ok(mesh)
     }
 
-    /// Returns the triangles alone, with the first of vertices at one place for all of them, in their order.
+    /// Returns only the triangles. Vertices at the same place are merged into the first of them, in their order.
     #[must_use]
     pub fn united(self) -> Self {
         let Self { vert, mut face, .. } = self;

@@ -9,7 +9,7 @@ const SHOWN: usize = 60;
 
 /// Corners of a polygon at least.
 const CORNERS: usize = 3;
-/// Corners of a polygon at most: MuJoCo 3.3.0 leaves out those that have more.
+/// The most corners of a polygon: MuJoCo 3.3.0 leaves out polygons with more.
 const MOST_CORNERS: usize = 100;
 /// The sum of the cubes of the numbers of corners: a thousand polygons of a hundred corners are far below.
 const WORK: u64 = 1 << 32;

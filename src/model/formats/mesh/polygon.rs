@@ -66,7 +66,7 @@ fn project(vert: &[[f32; 3]], corners: &[u32]) -> Vec<[f32; 2]> {
     (0..count).map(|k| axes.map(|axis| at(k)[axis])).collect()
 }
 
-/// Tells whether a point is in a triangle, by the crossings of a ray.
+/// Returns whether a point is in a triangle, by the crossings of a ray.
 fn inside(corners: [[f32; 2]; 3], [x, y]: [f32; 2]) -> bool {
     let mut odd = false;
     for (i, j) in [(0, 2), (1, 0), (2, 1)] {

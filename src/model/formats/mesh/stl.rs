@@ -9,7 +9,8 @@ const MOST: u32 = 200_000;
 /// The largest coordinate that MuJoCo takes, 2^30.
 const LARGEST: f32 = 1_073_741_824.0;
 
-/// Returns the number of triangles, and the bytes that they take with the header and that there are, which are as many.
+/// Returns the number of triangles, the bytes that they need with the header, and the bytes of the file, which must be
+/// the same number.
 fn sizes(bytes: &[u8]) -> Result<(usize, u64, u64), MeshError> {
     let count = word(bytes, HEADER - 4).ok_or(MeshError::Header(bytes.len()))?;
     if count == 0 || count > MOST {

@@ -10,7 +10,7 @@ use std::collections::BTreeSet;
 use std::io::Read;
 use std::path::Path;
 
-/// An archive in memory, whose arrays are inflated when they are asked for.
+/// An archive in memory. Arrays are inflated when they are read.
 #[derive(Debug)]
 pub struct Npz {
     file: String,
@@ -54,7 +54,7 @@ impl Npz {
         }
     }
 
-    /// Takes an archive from memory; `file_name` only names it in errors.
+    /// Reads an archive from memory; `file_name` only names it in errors.
     ///
     /// # Errors
     /// When the bytes are not an archive, or the header of an array is damaged.
@@ -62,7 +62,7 @@ impl Npz {
         Self::from_bytes_with(bytes, file_name, &Limits::DEFAULT)
     }
 
-    /// Takes an archive from memory, as [`Npz::from_bytes`] does, within other limits than the default ones.
+    /// Reads an archive from memory, as [`Npz::from_bytes`] does, with limits other than the default ones.
     ///
     /// # Errors
     /// As [`Npz::from_bytes`].
@@ -132,7 +132,7 @@ impl Npz {
         self.entries.iter().map(|entry| &entry.info)
     }
 
-    /// Reads an array's numbers as `f64`: any float or integer type, as long as every number is represented exactly.
+    /// Reads an array's numbers as `f64`: any float or integer type, provided that every number is represented exactly.
     ///
     /// # Errors
     /// When there is no such array, its data are damaged, or a number does not fit.

@@ -58,14 +58,14 @@ impl sealed::Sealed for Half {
 }
 impl Element for Half {}
 
-/// How an array is kept in an archive.
+/// The storage of an array in an archive.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Packing {
-    /// Deflated as far as it goes.
+    /// Deflated as much as possible.
     Small,
     /// Deflated quickly.
     Fast,
-    /// As it is: measured numbers hardly shrink.
+    /// Not compressed: measured numbers hardly shrink.
     Stored,
 }
 
@@ -149,7 +149,7 @@ impl NpzWriter {
             })
     }
 
-    /// Takes a name that was not used before.
+    /// Reserves a name that was not used before.
     fn name(&mut self, name: &str) -> Result<(), NpzError> {
         let refused = |reason: &str| NpzError::Write {
             array: name.to_string(),

@@ -55,8 +55,7 @@ pub fn check_png(bytes: &[u8], limits: &Limits) -> Result<[u32; 2], String> {
     Ok(sides)
 }
 
-/// Tells whether nothing shows through a PNG picture: each pixel of it has all of its opacity. One with a transparent colour (chunk tRNS) is
-/// taken for one that something shows through.
+/// Returns whether a PNG picture is opaque: every pixel has full opacity. A picture with a transparent colour (chunk tRNS) counts as not opaque.
 ///
 /// # Errors
 /// A description of the fault, without the name of the picture.
@@ -147,7 +146,7 @@ fn chunk(bytes: &[u8], at: usize) -> Result<Chunk<'_>, String> {
     Ok(Chunk { at, name, data, whole })
 }
 
-/// Returns the picture with the chunks alone that make its pixels, each of them checked.
+/// Returns the picture with only the chunks that make its pixels, each of them checked.
 fn essential(bytes: &[u8], limits: &Limits) -> Result<Vec<u8>, String> {
     if !bytes.starts_with(SIGNATURE) {
         return Err("not a PNG picture: it does not start with the bytes of one".to_string());

@@ -1,4 +1,4 @@
-//! Facets that a new point sees, and those that join it to their border.
+//! Facets that a new point sees, and the new facets that join it to their border.
 
 use super::Builder;
 use super::parts::{HullFailure, HullResult, Id, NONE, TAIL, drop_swapping, replace};
@@ -150,7 +150,7 @@ impl Builder<'_> {
         Ok(last)
     }
 
-    /// Puts a new facet into the ring of those that are merged into the same horizon.
+    /// Adds a new facet to the ring of facets that are merged into the same horizon.
     fn join_cycle(&mut self, facet: Id, horizon: Id) {
         self.facets[facet].merge_horizon = true;
         if self.facets[horizon].seen {
@@ -163,7 +163,7 @@ impl Builder<'_> {
         }
     }
 
-    /// Gives a facet an edge.
+    /// Adds an edge to a facet.
     pub(super) fn add_ridge(&mut self, facet: Id, ridge: Id) {
         self.facets[facet].ridges.push(ridge);
         self.facets[facet].ridged = true;

@@ -16,7 +16,7 @@ pub(super) struct FacetDistance {
 const BELOW_ALL: f64 = -f64::MAX / 2.0;
 
 impl Builder<'_> {
-    /// Tells whether there were enough merges that new facets are searched one by one, with doubled tolerances (`qh_USEfindbestnew`).
+    /// Returns whether there were enough merges that new facets are searched one by one, with doubled tolerances (`qh_USEfindbestnew`).
     pub(super) fn merged_much(&self) -> bool {
         self.merge_count > 50
     }
@@ -25,8 +25,8 @@ impl Builder<'_> {
         if self.merged_much() { 2.0 * distance } else { distance }
     }
 
-    /// Walks from a facet to neighbours that the point is higher above (`qh_findbest`). Unless the best is asked for, the first
-    /// facet that the point is outside of will do. Of new facets only new ones are walked to.
+    /// Walks from a facet to neighbours that the point is higher above (`qh_findbest`). Unless `best` is set, the walk ends at the
+    /// first facet that the point is outside of. If `only_new` is set, it stays among new facets.
     pub(super) fn find_best(&mut self, point: u32, start: Id, best: bool, only_new: bool) -> HullResult<FacetDistance> {
         let (highest, last) = self.climb(point, start, best, only_new);
         if highest.outside {
@@ -217,7 +217,7 @@ impl Builder<'_> {
         if best.0 == NONE { Err(HullFailure) } else { Ok(best) }
     }
 
-    /// Tells whether normals of new facets are in several octants (`qh_sharpnewfacets`).
+    /// Returns whether normals of new facets are in several octants (`qh_sharpnewfacets`).
     fn sharp_new_facets(&self) -> bool {
         let octant = |facet: Id| self.facets[facet].normal.unwrap_or([0.0; 3]).map(|x| x > 0.0);
         let all = self.facets_from(self.new_facets);

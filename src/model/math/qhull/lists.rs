@@ -4,7 +4,7 @@ use super::Builder;
 use super::parts::{Facet, HullFailure, HullResult, Id, NONE, TAIL, Vertex};
 
 impl Builder<'_> {
-    /// Tells whether a place in a list is a facet or vertex, and not its end.
+    /// Returns whether a place in a list is a facet or vertex, and not its end.
     #[inline(always)]
     pub(super) fn listed(id: Id) -> bool {
         id != NONE && id != TAIL
@@ -43,7 +43,7 @@ impl Builder<'_> {
         })
     }
 
-    /// Appends a facet. Marks at the end of the list move to it, as it is the first facet behind them.
+    /// Appends a facet. Marks at the end of the list move to it, because it is the first facet after them.
     pub(super) fn append_facet(&mut self, facet: Id) {
         if self.new_facets == TAIL {
             self.new_facets = facet;
@@ -66,7 +66,7 @@ impl Builder<'_> {
         self.facet_count += 1;
     }
 
-    /// Takes a facet out of the list.
+    /// Removes a facet from the list.
     pub(super) fn remove_facet(&mut self, facet: Id) -> HullResult {
         if !Self::listed(facet) || self.facet_count == 0 {
             return Err(HullFailure);
@@ -87,7 +87,7 @@ impl Builder<'_> {
         Ok(())
     }
 
-    /// Puts a facet before another.
+    /// Inserts a facet before another.
     fn insert_facet(&mut self, facet: Id, before: Id) {
         let previous = self.facets[before].previous;
         self.facets[facet].previous = previous;
@@ -120,7 +120,7 @@ impl Builder<'_> {
         Ok(())
     }
 
-    /// Marks a facet for removal, with the one that takes its place: it goes before the others that are removed (`qh_willdelete`).
+    /// Marks a facet for removal and notes its replacement. The facet moves before the others to be removed (`qh_willdelete`).
     pub(super) fn will_delete(&mut self, facet: Id, replace: Id) -> HullResult {
         if self.visible_facets == NONE && self.new_facets != NONE {
             return Err(HullFailure);
@@ -156,7 +156,7 @@ impl Builder<'_> {
         Ok(())
     }
 
-    /// Puts a vertex at the end.
+    /// Appends a vertex.
     pub(super) fn append_vertex(&mut self, vertex: Id) {
         if self.new_vertices == TAIL {
             self.new_vertices = vertex;
@@ -175,7 +175,7 @@ impl Builder<'_> {
         self.vertex_count += 1;
     }
 
-    /// Takes a vertex out of the list.
+    /// Removes a vertex from the list.
     pub(super) fn remove_vertex(&mut self, vertex: Id) -> HullResult {
         if !Self::listed(vertex) || self.vertex_count == 0 {
             return Err(HullFailure);
@@ -227,7 +227,7 @@ impl Builder<'_> {
         all
     }
 
-    /// Clears the list of new facets (`qh_resetlists`) and, if asked for, that of facets to be removed.
+    /// Clears the list of new facets (`qh_resetlists`) and, if requested, that of facets to be removed.
     pub(super) fn reset_lists(&mut self, visible_too: bool) {
         for vertex in self.vertices_from(self.new_vertices) {
             self.vertices[vertex].new = false;

@@ -5,8 +5,7 @@ use std::collections::BTreeMap;
 use super::Builder;
 use super::parts::{FORCED, HullFailure, HullResult, Id, NONE, SHARED};
 
-/// How many greatest widths two facets of a shared edge may be from each other, to be joined before others
-/// (`qh_WIDEdupridge`).
+/// Distance up to which two facets of a shared edge are joined before others, in greatest widths (`qh_WIDEdupridge`).
 pub(super) const WIDE: f64 = 50.0;
 
 /// New facets by the other vertex of an edge to the apex.
@@ -18,9 +17,9 @@ type FacetPair = (Id, usize, Id, usize);
 /// The best pair of facets found so far at a shared edge.
 #[derive(Default)]
 struct FacetMatch {
-    /// Facets that are not far from each other, and how far.
+    /// The nearest facets, if they are not far from each other, and their distance.
     good: Option<(FacetPair, f64)>,
-    /// If there are none, those that are farthest.
+    /// Otherwise the farthest facets.
     far: Option<(FacetPair, f64)>,
     /// Two facets have all vertices in common.
     duplicate: bool,
@@ -59,7 +58,7 @@ impl Builder<'_> {
         self.facets[facet].vertices.get(3 - skip).copied().ok_or(HullFailure)
     }
 
-    /// Which neighbour of a facet is beyond the edge to a vertex.
+    /// Returns the index of the neighbour of a facet beyond the edge to a vertex.
     fn edge_place(&self, facet: Id, vertex: Id) -> usize {
         if self.facets[facet].vertices.get(1) == Some(&vertex) {
             2
@@ -68,14 +67,14 @@ impl Builder<'_> {
         }
     }
 
-    /// Tells whether two facets wind consistently at an edge.
+    /// Returns whether two facets wind consistently at an edge.
     fn consistent(&self, (a, skip_a): (Id, usize), (b, skip_b): (Id, usize)) -> bool {
         let same = skip_a % 2 == skip_b % 2;
         same == (self.facets[a].top != self.facets[b].top)
     }
 
     /// Joins a facet at an edge to the one that waits there, or makes it wait; a third one makes the edge shared
-    /// (`qh_matchneighbor`). Returns by how much the number of open edges grows.
+    /// (`qh_matchneighbor`). Returns the change of the number of open edges.
     fn match_edge(&mut self, edges: &mut Edges, facet: Id, skip: usize) -> HullResult<isize> {
         let waiting = edges.entry(self.edge_vertex(facet, skip)?).or_default();
         let Some(&first) = waiting.iter().find(|&&other| other != facet) else {
@@ -114,7 +113,7 @@ impl Builder<'_> {
     }
 
     /// Joins the facets of a shared edge in pairs (`qh_matchdupridge`): first those that are nearest to each other, or else those
-    /// that are farthest; the others are to be merged. Returns how many open edges that closes.
+    /// that are farthest; the others are to be merged. Returns the number of open edges that this closes.
     fn match_shared(&mut self, edges: &Edges, at: Id, skip: usize) -> HullResult<isize> {
         let vertex = self.edge_vertex(at, skip)?;
         let waiting = edges.get(&vertex).ok_or(HullFailure)?;
@@ -193,7 +192,7 @@ impl Builder<'_> {
         Ok(choice)
     }
 
-    /// Keeps a pair if it is better than the one that was found.
+    /// Keeps a pair if it is better than the best one so far.
     fn weigh_pair(&mut self, choice: &mut FacetMatch, pair: FacetPair) -> HullResult {
         let (a, place_a, b, place_b) = pair;
         for facet in [a, b] {

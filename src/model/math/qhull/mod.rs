@@ -46,14 +46,14 @@ struct Builder<'p> {
     vertices: Arena<Vertex>,
     ridges: Arena<Ridge>,
     first_facet: Id,
-    /// Where new and changed facets begin, at the end of the list.
+    /// First new or changed facet; these end the list.
     new_facets: Id,
-    /// Where those begin that are to be removed, before the new ones.
+    /// First facet to be removed; these come before the new ones.
     visible_facets: Id,
-    /// The facet whose points are worked on next.
+    /// The facet whose points are processed next.
     next_facet: Id,
     first_vertex: Id,
-    /// Where vertices of new facets begin, at the end of the list.
+    /// First vertex of new facets; these end the list.
     new_vertices: Id,
     facet_count: usize,
     visible_count: usize,
@@ -65,19 +65,19 @@ struct Builder<'p> {
     interior: Vec3,
     /// The first simplex is a needle.
     narrow: bool,
-    /// Whether facets that a vertex belongs to are kept up.
+    /// Whether the facets of each vertex are kept up to date.
     has_neighbors: bool,
     find_best_new: bool,
     /// New facets were found not to be sharp.
     not_sharp: bool,
-    /// How high points or vertices are above facets that they are at.
+    /// Largest height of points or vertices above their facets.
     max_outside: f64,
-    /// How far vertices are below.
+    /// Smallest height of vertices relative to their facets; negative below.
     min_vertex: f64,
-    /// How high a point could be above such a facet.
+    /// Upper bound of the height of a point above its facet.
     most_outside: f64,
     merge_count: u32,
-    /// Ends of edges of merged facets that were gone through.
+    /// Number of visited ends of edges of merged facets.
     work: usize,
     merges: Vec<Merge>,
     degenerates: Vec<Merge>,

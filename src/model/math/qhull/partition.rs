@@ -4,11 +4,11 @@ use super::Builder;
 use super::find::FacetDistance;
 use super::parts::{HullFailure, HullResult, Id, NONE, push_second_last};
 
-/// How many times the greatest width a coplanar point may be above before it counts as outside (`qh_RATIOcoplanaroutside`).
+/// Height above which a coplanar point counts as outside, in greatest widths (`qh_RATIOcoplanaroutside`).
 const COPLANAR_OUTSIDE: f64 = 30.0;
 
 impl Builder<'_> {
-    /// Takes the next point: the farthest one of the first facet that has any (`qh_nextfurthest`).
+    /// Removes and returns the next point: the farthest one of the first facet that has any (`qh_nextfurthest`).
     pub(super) fn next_farthest(&mut self) -> Option<(u32, Id)> {
         while Self::listed(self.next_facet) {
             let facet = self.next_facet;
@@ -45,7 +45,7 @@ impl Builder<'_> {
         self.facets[facet].not_furthest = false;
     }
 
-    /// Hands a point to the facet that it is highest above, or at, or drops it (`qh_partitionpoint`).
+    /// Assigns a point to the facet that it is highest above or coplanar with, or drops it (`qh_partitionpoint`).
     pub(super) fn partition_point(&mut self, point: u32, facet: Id) -> HullResult {
         let found = if self.find_best_new {
             self.find_best_of_new(point, facet, false)?
@@ -72,7 +72,7 @@ impl Builder<'_> {
         Ok(())
     }
 
-    /// Puts a point among those outside a facet. A facet that has its first such point is worked on later.
+    /// Adds a point to those outside a facet. A facet that gets its first such point is processed later.
     fn put_outside(&mut self, point: u32, facet: Id, dist: f64) -> HullResult {
         let (narrow, least) = (self.narrow, self.tolerance.outside);
         let entry = &mut self.facets[facet];
@@ -103,8 +103,8 @@ impl Builder<'_> {
         Ok(())
     }
 
-    /// Puts a point among those at a facet (`qh_partitioncoplanar`); without a distance the best facet is looked for, among
-    /// all new ones or by a walk. What turns out to be far above is outside.
+    /// Adds a point to those coplanar with a facet (`qh_partitioncoplanar`). Without a distance, it first looks for the
+    /// best facet among all new ones or by a walk. A point that turns out to be far above is outside.
     pub(super) fn partition_coplanar(&mut self, point: u32, facet: Id, dist: Option<f64>, all_new: bool) -> HullResult {
         let (best, height) = match dist {
             Some(dist) => (facet, dist),
@@ -156,7 +156,7 @@ impl Builder<'_> {
         Ok(())
     }
 
-    /// Returns the facet that stands for one that was removed (`qh_getreplacement`).
+    /// Returns the facet that replaces a removed one (`qh_getreplacement`).
     pub(super) fn replacement(&self, facet: Id) -> HullResult<Id> {
         let mut at = facet;
         for _ in 0..=self.facets.len() {
@@ -168,7 +168,7 @@ impl Builder<'_> {
         Err(HullFailure)
     }
 
-    /// Hands on the points of the facets that are removed, and of the vertices that are (`qh_partitionvisible`).
+    /// Reassigns the points of the removed facets and of the removed vertices (`qh_partitionvisible`).
     pub(super) fn partition_visible(&mut self) -> HullResult {
         for facet in self.visible() {
             if self.facets[facet].outside.is_empty() && self.facets[facet].coplanar.is_empty() {

@@ -83,13 +83,13 @@ pub(super) struct Facet {
     pub(super) offset: f64,
     /// The mean of its vertices, on its plane, once it is computed.
     pub(super) center: Option<Vec3>,
-    /// How high the last of `outside` is.
+    /// Height of the last point of `outside`.
     pub(super) furthest: f64,
     /// Bound on the distance of points above the facet, as far as known.
     pub(super) max_outside: f64,
-    /// Facet that stands for it after it was removed.
+    /// Facet that replaces it after its removal.
     pub(super) replace: Id,
-    /// Of a new facet that is merged into its horizon: the next of those with the same horizon, in a ring. Of the horizon: the last.
+    /// For a new facet that is merged into its horizon: the next one with the same horizon, in a ring. For the horizon: the last one.
     pub(super) cycle: Id,
     /// Number of merges.
     pub(super) merges: u16,
@@ -127,7 +127,7 @@ pub(super) struct Facet {
 pub(super) struct Vertex {
     pub(super) previous: Id,
     pub(super) next: Id,
-    /// Which point it is.
+    /// Index of the point.
     pub(super) point: u32,
     /// Facets that it is a vertex of, kept up from the first merge on.
     pub(super) neighbors: Vec<Id>,
@@ -219,7 +219,7 @@ pub(super) fn drop_sorted(set: &mut Vec<Id>, item: Id) {
     }
 }
 
-/// Puts an item in the place of another (`qh_setreplace`).
+/// Replaces an item by another (`qh_setreplace`).
 pub(super) fn replace(set: &mut [Id], old: Id, new: Id) -> HullResult {
     let place = set.iter_mut().find(|other| **other == old).ok_or(HullFailure)?;
     *place = new;

@@ -13,17 +13,18 @@ pub(super) struct Tolerance {
     pub(super) dist: f64,
     /// Pivots that may be zero, by dimension (`NEARzero`).
     pub(super) near_zero: Vec3,
-    /// How far a centre may be from the other plane, so that the facets count as coplanar (`premerge_centrum`).
+    /// Largest distance of a centre from the other plane at which facets count as coplanar (`premerge_centrum`).
     pub(super) centrum: f64,
-    /// How much a merge may move a plane (`ONEmerge`).
+    /// Largest distance by which a merge may move a plane (`ONEmerge`).
     pub(super) one_merge: f64,
-    /// How far above a facet a point is that sees it (`MINvisible`); as far it may be below and is coplanar (`MAXcoplanar`).
+    /// Height above a facet from which a point sees it (`MINvisible`), and depth below it down to which a point is coplanar
+    /// (`MAXcoplanar`).
     pub(super) visible: f64,
-    /// How far above a facet a point is that is outside (`MINoutside`).
+    /// Height above a facet from which a point is outside (`MINoutside`).
     pub(super) outside: f64,
-    /// How far below a facet points are kept (`NEARinside`).
+    /// Depth below a facet down to which points are kept (`NEARinside`).
     pub(super) near_inside: f64,
-    /// How wide a merged facet is that keeps its centre (`WIDEfacet`).
+    /// Width from which a merged facet keeps its centre (`WIDEfacet`).
     pub(super) wide: f64,
 }
 

@@ -4,7 +4,7 @@ use super::Builder;
 use super::parts::{HullFailure, HullResult, Id, Merge, MergeReason, NONE, TAIL, replace};
 
 impl Builder<'_> {
-    /// Splits every polygon into triangles that stand for it in the list, after all that are triangles.
+    /// Replaces every polygon in the list by triangles, after the facets that already are triangles.
     pub(super) fn triangulate(&mut self) -> HullResult {
         self.visit += 1;
         self.new_vertices = TAIL;

@@ -1,4 +1,4 @@
-//! Which facets each vertex belongs to. The order of these sets is that of the edges in the end.
+//! The facets of each vertex. The order of these sets decides the final order of the edges.
 
 use super::Builder;
 use super::parts::{Id, NONE, drop_swapping, push_unique};
@@ -23,7 +23,7 @@ impl Builder<'_> {
         self.has_neighbors = true;
     }
 
-    /// Takes removed facets from their vertices and adds the new ones of a point (`qh_update_vertexneighbors_cone`).
+    /// Removes deleted facets from their vertices and adds the new facets of a point (`qh_update_vertexneighbors_cone`).
     pub(super) fn update_cone_neighbors(&mut self) {
         if self.has_neighbors {
             for vertex in self.vertices_from(self.new_vertices) {
@@ -46,8 +46,8 @@ impl Builder<'_> {
         self.drop_unseen_vertices();
     }
 
-    /// The same after merges of vertices and after polygons are split (`qh_update_vertexneighbors`): here what is left keeps
-    /// its order.
+    /// The same after merges of vertices and after polygons are split (`qh_update_vertexneighbors`): here the remaining
+    /// facets keep their order.
     pub(super) fn update_neighbors(&mut self) {
         if self.has_neighbors {
             for vertex in self.vertices_from(self.new_vertices) {

@@ -69,7 +69,7 @@ impl ContactRules {
         self.geoms.len()
     }
 
-    /// Tells whether a geom may touch any other, as far as its own properties say.
+    /// Returns whether a geom may touch any other, as far as its own properties say.
     pub(super) fn takes_part(&self, g: usize) -> bool {
         let geom = &self.geoms[g];
         geom.contype | geom.conaffinity != 0 || self.explicit.iter().any(|(geoms, _)| geoms.contains(&(g as u32)))
@@ -83,12 +83,12 @@ impl ContactRules {
         same.map(|e| e.1)
     }
 
-    /// Tells whether two geoms are an explicit pair.
+    /// Returns whether two geoms are an explicit pair.
     pub(super) fn is_explicit(&self, a: usize, b: usize) -> bool {
         self.explicit(a, b).next().is_some()
     }
 
-    /// Tells whether two geoms may touch.
+    /// Returns whether two geoms may touch.
     pub fn allow(&self, a: usize, b: usize) -> bool {
         self.is_explicit(a, b) || self.collide(a, b)
     }
@@ -100,8 +100,8 @@ impl ContactRules {
         if key(a) <= key(b) { [a, b] } else { [b, a] }
     }
 
-    /// Returns the places of the pairs of two geoms in contact order; none if they may not touch. An explicit pair stands
-    /// for what their own properties say.
+    /// Returns the places of the pairs of two geoms in contact order; none if they may not touch. An explicit pair replaces
+    /// their own properties.
     pub(super) fn orders(&self, a: usize, b: usize) -> impl Iterator<Item = PairOrder> {
         let mut explicit = self.explicit(a, b).peekable();
         let dynamic = if explicit.peek().is_none() {
@@ -139,7 +139,7 @@ impl ContactRules {
         sorted(self.geoms[a].body as usize, self.geoms[b].body as usize)
     }
 
-    /// Tells whether two geoms may touch that are not an explicit pair.
+    /// Returns whether two geoms that are not an explicit pair may touch.
     fn collide(&self, a: usize, b: usize) -> bool {
         let (x, y) = (&self.geoms[a], &self.geoms[b]);
         let flat = |kind: GeomType| matches!(kind, GeomType::Plane | GeomType::HField);

@@ -15,8 +15,8 @@ use crate::vectorize::vectorized;
 const LEAST: f64 = 1e-10;
 
 impl DualSolver {
-    /// Changes the forces of dry friction and of friction of contacts, after another solver (MuJoCo's `mj_solNoSlip`), and
-    /// `qacc, qfrc_constraint` with them; the start of the next step's solver stays. `bodies` must be up to date.
+    /// Corrects dry friction and contact friction after another solver (MuJoCo's `mj_solNoSlip`), and `qacc, qfrc_constraint` with them.
+    /// The warm start of the next step stays. `bodies` must be up to date.
     ///
     /// # Errors
     /// More numbers in the matrices than [`Limits::dual_numbers`](mjcf_sim_model::Limits::dual_numbers).

@@ -1,4 +1,4 @@
-//! Which tiles of the Hessian of an island are not zero, and which rows are eliminated into which.
+//! The nonzero tiles of an island's Hessian, and the order in which rows are eliminated.
 
 use super::{Hessian, NONE};
 use crate::constraint::island::Island;

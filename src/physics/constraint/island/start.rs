@@ -1,4 +1,4 @@
-//! Where Newton's method starts.
+//! The starting point of Newton's method.
 
 use super::Island;
 use crate::constraint::Efc;
@@ -73,7 +73,7 @@ impl Island {
         }
     }
 
-    /// Tells whether the acceleration, whose cost is `cost`, is sure to cost less than the one without constraints.
+    /// Returns whether the acceleration, whose cost is `cost`, is sure to cost less than the one without constraints.
     ///
     /// The cost is convex, and as curved as the inertia `M` at least. So the cost without constraints exceeds this one by
     /// `gradient d + d M d / 2` or more, where `d` leads from here to there. What rounding may hide counts as unsure.

@@ -14,7 +14,7 @@ pub(super) type Four6 = [Four; 6];
 
 impl Articulated {
     /// Computes half of `M^-1` for four right sides (nv each), for some degrees of freedom, which begin with those of a tree: `h` with
-    /// `b' M^-1 c = sum_d h_d(b) h_d(c) / D_d`, the inward pass of [`Articulated::solve`] alone. `D_d^-1` is
+    /// `b' M^-1 c = sum_d h_d(b) h_d(c) / D_d`, only the inward pass of [`Articulated::solve`]. `D_d^-1` is
     /// [`Articulated::inverse`]. `h_d` is zero where `b` is zero for `d` and all that `d` moves.
     #[doc(alias = "mj_solveM2")]
     #[inline(always)]

@@ -23,7 +23,7 @@ fn geoms(model: &Model, kind: ObjType, id: Option<usize>) -> std::ops::Range<usi
 }
 
 impl DistanceScratch {
-    /// Returns the value of a sensor, with zeros behind it.
+    /// Returns the value of a sensor, padded with zeros.
     pub fn value(&mut self, model: &Model, s: &State, sensor: usize) -> [f64; 6] {
         let scratch = self.scratch.get_or_insert_with(Scratch::new);
         let options = ContactOptions {

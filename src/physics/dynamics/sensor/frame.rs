@@ -1,4 +1,4 @@
-//! Sensors of frames: pose, velocity and acceleration of an object, where asked for as another one sees it.
+//! Sensors of frames: pose, velocity and acceleration of an object, relative to another one if requested.
 
 use super::vector;
 use crate::math::*;

@@ -59,7 +59,7 @@ pub fn sensors(model: &Model, s: &mut State, scratch: &mut SensorScratch) {
     s.sensordata = data;
 }
 
-/// Returns the value of one sensor, with zeros behind it; [`SensorType`] tells the quantities.
+/// Returns the value of one sensor, padded with zeros; [`SensorType`] tells the quantities.
 fn value(model: &Model, s: &State, scratch: &SubtreeScratch, sensor: usize) -> [f64; 4] {
     use SensorType::*;
     // the clock alone measures no object
@@ -127,7 +127,7 @@ fn on_site(model: &Model, s: &State, kind: SensorType, site: usize) -> [f64; 4] 
     vector(mat_t_vec(mat, world))
 }
 
-/// Returns the reading of a limit sensor from the first of its rows; 0 if there is none.
+/// Returns the reading of a limit sensor from the first of its rows; 0 without rows.
 fn limit(s: &State, rows: ConstraintType, kind: SensorType, id: usize) -> f64 {
     let Some(block) = s.efc.blocks.iter().find(|b| b.kind == rows && b.id == id) else {
         return 0.0;

@@ -1,4 +1,4 @@
-//! Where cameras have points in their pictures.
+//! Positions of points in the pictures of cameras.
 
 use std::f64::consts::PI;
 
@@ -6,7 +6,8 @@ use crate::math::*;
 use crate::model::Model;
 use crate::state::State;
 
-/// Returns where a site is in the picture of a camera, pixels to the right and down from the upper left corner, with zeros behind it.
+/// Returns the position of a site in the picture of a camera, pixels to the right and down from the upper left corner, padded with
+/// zeros.
 pub(super) fn projection(model: &Model, s: &State, site: usize, camera: usize) -> [f64; 4] {
     let [x, y, z] = mat_t_vec(&s.cam_xmat[camera], sub(s.site_xpos[site], s.cam_xpos[camera]));
     let [width, height] = model.cam_resolution[camera].map(|pixels| pixels as f64);

@@ -57,7 +57,7 @@ impl std::fmt::Debug for CoupledSimulation {
     }
 }
 
-/// A copy goes on as the original does, in a copy of the world.
+/// A copy continues as the original does, in a copy of the world.
 impl Clone for CoupledSimulation {
     fn clone(&self) -> Self {
         Self {
@@ -84,7 +84,7 @@ fn with_slots(document: &Document, options: &CouplingOptions) -> Result<Document
     Ok(document)
 }
 
-/// Copies what is in the world of a document into that of another, whatever their settings: slots give all their numbers.
+/// Copies the world of a document into that of another. Their settings do not matter, because slots give all their numbers.
 fn copy_children(to: &mut Document, from: &Document, world: ElementId) -> Result<(), EditError> {
     let mut open = vec![(world, to.world())];
     while let Some((source, target)) = open.pop() {
@@ -164,8 +164,8 @@ impl CoupledSimulation {
         self.coupling.unload(self.engine.model(), &self.state, sets)
     }
 
-    /// Gives the rest of the impulses to the bodies of the world after its step; see [`Coupling::unload`]. The next
-    /// [`CoupledSimulation::step`] does it otherwise.
+    /// Applies the rest of the impulses to the bodies of the world after its step; see [`Coupling::unload`]. Otherwise the next
+    /// [`CoupledSimulation::step`] applies them.
     pub fn finish(&mut self, sets: &mut WorldSets<'_>) {
         self.coupling.finish(sets);
     }
@@ -190,7 +190,7 @@ impl CoupledSimulation {
         &mut self.coupling
     }
 
-    /// Takes the model out of the world.
+    /// Removes the model from the world.
     pub fn leave(self, sets: &mut WorldSets<'_>) {
         self.coupling.leave(sets);
     }

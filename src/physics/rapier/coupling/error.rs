@@ -22,7 +22,7 @@ pub enum CouplingError {
         /// Time step, s.
         dt: f64,
     },
-    /// The time step of the world is no multiple of the model's.
+    /// The time step of the world is not a multiple of the model's.
     #[error(
         "the world's time step, {dt} s, is not {steps} time steps of the model, {timestep} s each: change one of them"
     )]
@@ -48,7 +48,7 @@ pub enum CouplingError {
         /// Vector at fault.
         what: &'static str,
     },
-    /// More neighbors than slots.
+    /// There are more neighbors than slots.
     #[error("more than {slots} {what} are near the model: raise CouplingOptions::{option}, or lower near")]
     TooManyNeighbors {
         /// Kind of neighbors.

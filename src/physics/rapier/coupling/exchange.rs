@@ -1,4 +1,4 @@
-//! What the world and a state tell each other in a step.
+//! The exchange between the world and a state in a step.
 
 use mjcf_sim_model::Model;
 use mjcf_sim_model::math::{Quat, Vec3, add, add_scaled, cross, mat_t_vec, sub};
@@ -23,7 +23,7 @@ fn quat(q: Rotation) -> Quat {
     [q.w, q.x, q.y, q.z]
 }
 
-/// Puts the neighbors into a state: poses, velocities, and forces other than those of contacts. Unused slots rest.
+/// Writes the neighbors into a state: poses, velocities, and forces other than those of contacts. Unused slots rest.
 pub(super) fn load(s: &mut State, slots: &Slots, neighbors: &[Neighbor], sets: &WorldSets<'_>, frame: Pose) {
     let gravity = frame.rotation.inverse() * sets.gravity;
     if s.params.gravity != vec3(gravity) {
@@ -54,7 +54,7 @@ pub(super) fn load(s: &mut State, slots: &Slots, neighbors: &[Neighbor], sets: &
     }
 }
 
-/// Lets a slot rest at the origin, with a force against gravity.
+/// Parks a slot at the origin, with a force against gravity.
 fn rest(s: &mut State, slot: &Slot, gravity: Vector) {
     let Some([q, d]) = slot.joint else { return };
     s.qpos[q..q + 7].copy_from_slice(&[0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0]);
@@ -117,7 +117,7 @@ fn share(substeps: usize) -> f64 {
     (n + 1.0) / (2.0 * n)
 }
 
-/// Gives the first part of the impulses to the bodies of the world, and notes the rest. Sleeping bodies wake.
+/// Applies the first part of the impulses to the bodies of the world, and keeps the rest. Sleeping bodies wake.
 pub(super) fn unload(impulses: &[Impulse], neighbors: &mut [Neighbor], sets: &mut WorldSets<'_>, frame: Pose) {
     let share = share(sets.substeps);
     for n in neighbors.iter_mut().filter(|n| n.moved) {
@@ -128,7 +128,7 @@ pub(super) fn unload(impulses: &[Impulse], neighbors: &mut [Neighbor], sets: &mu
     }
 }
 
-/// Gives the rest of the impulses to the bodies of the world.
+/// Applies the rest of the impulses to the bodies of the world.
 pub(super) fn finish(neighbors: &mut [Neighbor], sets: &mut WorldSets<'_>, frame: Pose) {
     for n in neighbors.iter_mut().filter(|n| n.moved) {
         push(n.source, std::mem::take(&mut n.pending), sets, frame);

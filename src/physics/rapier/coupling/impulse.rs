@@ -1,4 +1,4 @@
-//! What contacts give to a body in a step.
+//! Impulses of contacts on a body in a step.
 
 use mjcf_sim_model::math::{Vec3, scale};
 

@@ -135,9 +135,9 @@ impl<'a> From<&'a mut PhysicsWorld> for WorldSets<'a> {
 
 /// Couples a model with a Rapier world.
 ///
-/// A program that steps the model itself calls, for each step of the world: [`Coupling::update`], and where it returns a model goes on
+/// A program that steps the model itself calls, for each step of the world: [`Coupling::update`], and if it returns a model, continues
 /// with an engine for that; [`Coupling::load`]; for each step of the model the engine and [`Coupling::record`]; and
-/// [`Coupling::unload`]. A copy goes on as the original does, in a copy of the world.
+/// [`Coupling::unload`]. A copy continues as the original does, in a copy of the world.
 #[derive(Clone)]
 pub struct Coupling {
     options: CouplingOptions,
@@ -228,8 +228,8 @@ impl Coupling {
         Ok(steps as u32)
     }
 
-    /// Finds the neighbors of the model. If its slots have to change, returns the model with them: the program goes on with an engine for
-    /// it and with [`Coupling::adopt`]. The sizes of the model, its ids and its names stay.
+    /// Finds the neighbors of the model. If its slots have to change, returns the model with the new slots: the program continues with an
+    /// engine for it and with [`Coupling::adopt`]. The sizes of the model, its ids and its names stay.
     ///
     /// # Errors
     /// More neighbors than slots, shapes that the model cannot have, a state of another model.
@@ -271,7 +271,7 @@ impl Coupling {
         edit::write_params(params, model, &self.slots);
     }
 
-    /// Puts the neighbors and the world's gravity into a state, before the steps of the model.
+    /// Writes the neighbors and the world's gravity into a state, before the steps of the model.
     pub fn load(&mut self, state: &mut State, sets: &WorldSets<'_>) {
         self.impulses.fill(Impulse::default());
         exchange::load(state, &self.slots, &self.neighbors.all, sets, self.frame);
@@ -283,8 +283,7 @@ impl Coupling {
         exchange::record(state, model, &self.slots, h, &mut self.impulses);
     }
 
-    /// Gives the impulses since [`Coupling::load`] to the bodies of the world, and lets the model's colliders follow in the next step of
-    /// the world.
+    /// Applies the impulses since [`Coupling::load`] to the bodies of the world. The model's colliders follow in the next step of the world.
     ///
     /// A part of each impulse acts after that step: [`Coupling::finish`] gives it, or else the next [`Coupling::update`]. With
     /// all of it before, a body at rest on the model would have a speed of 3/8 of what gravity adds in a step, with Rapier's default of four
@@ -299,7 +298,7 @@ impl Coupling {
         Ok(())
     }
 
-    /// Gives the rest of the impulses to the bodies of the world after its step, for programs that read their velocities there.
+    /// Applies the rest of the impulses to the bodies of the world after its step, for programs that read their velocities there.
     pub fn finish(&mut self, sets: &mut WorldSets<'_>) {
         exchange::finish(&mut self.neighbors.all, sets, self.frame);
     }
@@ -317,7 +316,7 @@ impl Coupling {
         })
     }
 
-    /// Puts the model's colliders at the poses of a state at once, after a reset.
+    /// Moves the model's colliders to the poses of a state at once, after a reset.
     ///
     /// # Errors
     /// A state of another model.
@@ -327,7 +326,7 @@ impl Coupling {
         Ok(())
     }
 
-    /// Takes the model's bodies and colliders out of the world.
+    /// Removes the model's bodies and colliders from the world.
     pub fn leave(mut self, sets: &mut WorldSets<'_>) {
         self.finish(sets);
         self.proxies.remove(sets);
@@ -370,7 +369,7 @@ impl Coupling {
         [impulse.linear, impulse.angular].map(|v| self.frame.rotation * vector(v))
     }
 
-    /// Returns the geom of the model that a collider of the world stands for.
+    /// Returns the geom of the model that corresponds to a collider of the world.
     pub fn geom_of(&self, collider: ColliderHandle) -> Option<usize> {
         self.proxies.geom_of(collider)
     }

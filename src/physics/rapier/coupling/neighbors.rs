@@ -12,10 +12,10 @@ use super::shapes::{GeomRow, GeomText};
 use super::slots::Slots;
 use super::{CouplingError, CouplingOptions, Material, WorldSets};
 
-/// Distance from a neighbor below which a fixed collider is one, too, m: what the neighbor stands on.
+/// Distance from a neighbor below which a fixed collider is a neighbor, too, m: the neighbor may stand on it.
 const BENEATH: f64 = 0.02;
 
-/// What a neighbor is in the world.
+/// The part of the world that a neighbor stands for.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Source {
     /// A dynamic or kinematic body.
@@ -24,7 +24,7 @@ pub(super) enum Source {
     Fixed(ColliderHandle),
 }
 
-/// What the geoms of a collider were made from.
+/// The properties of a collider from which its geoms were made.
 #[derive(Clone)]
 struct SeenCollider {
     handle: ColliderHandle,
@@ -105,7 +105,7 @@ impl Neighbor {
 #[derive(Clone, Default)]
 pub(super) struct Neighbors {
     pub all: Vec<Neighbor>,
-    /// Fixed colliders that the model brought along, which are no neighbors.
+    /// Fixed colliders that the model brought along. They are not neighbors.
     pub own: Vec<ColliderHandle>,
     /// Scratch: boxes around bodies that are neighbors.
     boxes: Vec<Aabb>,
@@ -146,7 +146,7 @@ impl Neighbors {
         Self { own, ..Self::default() }
     }
 
-    /// Brings the neighbors up to date. Returns whether the model has to change.
+    /// Updates the neighbors. Returns whether the model has to change.
     pub fn update(
         &mut self,
         sets: &WorldSets<'_>,
@@ -359,7 +359,7 @@ impl Neighbor {
     }
 }
 
-/// Returns whether a neighbor is what it was when its geoms were made.
+/// Returns whether a neighbor is unchanged since its geoms were made.
 fn unchanged(n: &Neighbor, sets: &WorldSets<'_>, options: &CouplingOptions) -> bool {
     match n.source {
         Source::Body(handle) => {

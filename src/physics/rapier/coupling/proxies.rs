@@ -71,7 +71,7 @@ impl Proxies {
         proxies
     }
 
-    /// Lets the bodies follow a state in the next step of the world.
+    /// Makes the bodies follow a state in the next step of the world.
     pub fn follow(&mut self, model: &Model, s: &State, sets: &mut WorldSets<'_>, frame: Pose) {
         for (g, &size) in s.params.geom_size.iter().enumerate() {
             if self.sizes[g] != size {
@@ -90,7 +90,7 @@ impl Proxies {
         }
     }
 
-    /// Puts the bodies at the poses of a state at once.
+    /// Moves the bodies to the poses of a state at once.
     pub fn place(&self, model: &Model, s: &State, sets: &mut WorldSets<'_>, frame: Pose) {
         for &(handle, b) in &self.bodies {
             if model.moves(b)

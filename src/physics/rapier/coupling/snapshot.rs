@@ -22,7 +22,7 @@ struct SavedNeighbor {
     pending: Impulse,
 }
 
-/// What a coupling remembers from one step to the next: which bodies are its neighbors, in which slots.
+/// The memory of a coupling between steps: its neighbors and their slots.
 ///
 /// With the state of the model and the sets of the world, which are the program's to keep, it continues a run with the same bits.
 #[derive(Clone, Debug, PartialEq)]

@@ -32,7 +32,7 @@ fn step(model: &mut CoupledSimulation, world: &mut PhysicsWorld) {
     world.step();
 }
 
-/// Copies what decides how a world goes on.
+/// Copies the state that a world continues from.
 fn copy_of(world: &PhysicsWorld) -> PhysicsWorld {
     let mut copy = PhysicsWorld::new();
     copy.gravity = world.gravity;

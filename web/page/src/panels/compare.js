@@ -1,4 +1,4 @@
-// A second MIMo beside the first: what he has of his own.
+// The second MIMo next to the first, and his own settings.
 import { el, say } from "../dom.js";
 import { POLICIES } from "./move.js";
 import { card, check, slider } from "./controls.js";

@@ -12,7 +12,7 @@ export function card(title, ...children) {
 }
 
 /**
- * A row of buttons of which one is chosen.
+ * A row of buttons with one chosen.
  * @param {string} label
  * @param {[string, string][]} options value and text
  * @param {(value: string) => void} chosen

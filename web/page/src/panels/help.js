@@ -36,7 +36,7 @@ export function help(app) {
       el("li", {}, "Take over single joints with sliders, lock others, or drop a trained network (ONNX) on the page."),
       el("li", {}, "Go back through the last half minute on the line of time. Played on, the same happens again, bit by bit, until you do something else."),
       el("li", {}, "Put a second MIMo beside him, of another age, with other nerves or another policy: one clock moves both."),
-      el("li", {}, "Send a link: it carries this very moment, and goes on with the same bits on another machine.")),
+      el("li", {}, "Send a link: it carries this very moment, and continues with the same bits on another machine.")),
     el("p", { style: "margin-top:10px" }, el("kbd", {}, "Space"), " play or pause  ", el("kbd", {}, "."), " one step  ", el("kbd", {}, ","), " one back  ", el("kbd", {}, "R"), " reset  ", el("kbd", {}, "?"), " this panel"),
     el("h3", {}, "Read on"),
     el("ul", {},

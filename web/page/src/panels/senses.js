@@ -9,7 +9,7 @@ import { card, check, slider } from "./controls.js";
 export function senses(app) {
   const error = el("p", { className: "error", role: "alert" });
   let last = Promise.resolve();
-  /** Changes one after the other, each on top of what the one before has made. */
+  /** Queue of changes; each starts from the result of the previous one. */
   const change = (/** @type {() => Settings} */ settings) => {
     last = last.then(async () => {
       say(error, "");

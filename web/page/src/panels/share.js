@@ -30,7 +30,7 @@ function address(app) {
     });
   return card(
     "Link",
-    el("p", { className: "soft small" }, "Everything is in the link; no server keeps it. Opened, this moment goes on with the same bits."),
+    el("p", { className: "soft small" }, "Everything is in the link; no server keeps it. When opened, this moment continues with the same bits."),
     el("div", { className: "row" }, button("Copy link to this moment", () => copy(true), "main"), button("Link to the settings", () => copy(false))),
     shown,
   );

@@ -1,4 +1,4 @@
-// Policies trained for MIMo's tasks, in files beside the page. Each starts its task and moves him.
+// Policies trained for MIMo's tasks, in separate files of the page. Each starts its task and moves him.
 import { el } from "../dom.js";
 import { button, card } from "./controls.js";
 

@@ -133,7 +133,7 @@ function regards(how, counts, steps) {
 /** @param {import("../app.js").App} app */
 function skin(app) {
   const { stage } = app;
-  /** Changes something on the stage, and on that beside it. */
+  /** Changes something on this stage and on the one next to it. */
   const each = (/** @type {(stage: import("../stage/stage.js").Stage) => void} */ change) => {
     for (const s of [stage, stage.peer]) {
       if (!s) continue;

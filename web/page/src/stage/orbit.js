@@ -34,7 +34,7 @@ export class Orbit {
   }
 
   /**
-   * Moves the centre towards what is followed.
+   * Moves the centre towards the followed body.
    * @param {Vector3} target
    * @param {number} seconds 0 jumps there
    */

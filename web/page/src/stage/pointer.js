@@ -2,7 +2,7 @@
 import { Plane, Raycaster, Vector2, Vector3 } from "three";
 import { toBody } from "./skin.js";
 
-/** Milliseconds between checks of what is under a passing pointer. */
+/** Milliseconds between checks of the body under a passing pointer. */
 const HOVER = 60;
 
 /** @typedef {{ body: number, point: [number, number, number], target: [number, number, number] }} Pull */

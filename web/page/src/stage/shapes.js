@@ -7,7 +7,7 @@ import { BoxGeometry, BufferAttribute, BufferGeometry, CapsuleGeometry, Cylinder
 const FAR = 12;
 
 /**
- * Returns what instances of a drawable are scaled by: its size, or nothing where the geometry has it already.
+ * Returns the scale of a drawable's instances: its size, or nothing if the geometry already has it.
  * @param {Drawable} d
  * @returns {[number, number, number]}
  */

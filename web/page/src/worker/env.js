@@ -1,4 +1,4 @@
-// The environment as the page uses it: the package's, with what a page needs put in order.
+// The environment as the page uses it: the package's environment, with the data arranged for a page.
 import init, { Blueprint, Env, configKeys, loadFace, memoryBytes } from "babybench/babybench.js";
 import { Glances } from "./glances.js";
 
@@ -11,7 +11,7 @@ const PARTS = 34;
 export const load = () => init();
 
 /**
- * Fetches the face that settings ask for, which an environment needs before it is made.
+ * Fetches the face that the settings select, which an environment needs before it is made.
  * @param {Settings | string} settings
  * @param {Record<string, Uint8Array>} [assets]
  */
@@ -132,7 +132,7 @@ export class PageEnv {
     this.env.applyForce(body, force, [0, 0, 0], at);
   }
 
-  /** Brings the numbers that are drawn up to date; they are valid until the next call. */
+  /** Updates the drawn numbers; they are valid until the next call. */
   refresh() {
     return this.env.update();
   }

@@ -12,7 +12,8 @@ export class Glances {
   }
 
   /**
-   * Takes what is before the eyes and returns what is noticed, the first picture of an episode until later ones arrive.
+   * Takes the current pictures of the eyes and returns the delayed ones: the first of an episode until later ones
+   * arrive.
    * @param {number} time s
    * @param {Uint8ClampedArray<ArrayBuffer>} pixels
    */

@@ -18,7 +18,7 @@ function world() {
   return live;
 }
 
-/** The world that lives, or the one beside it. @param {boolean} [second] */
+/** The running world, or the one next to it. @param {boolean} [second] */
 function of(second) {
   const w = second ? world().twin : world();
   if (!w) throw new Error("MIMo is alone.");
@@ -63,7 +63,7 @@ function stopped(e) {
 }
 
 /**
- * Creates an environment and brings it to its start.
+ * Creates an environment and moves it to its start.
  * @param {{ settings: import("../types").Settings | string, assets?: Record<string, Uint8Array>, seed: number, locks: string[], snapshot: Uint8Array | null }} d
  */
 function build(d) {

@@ -3,7 +3,7 @@
 /** @typedef {{ low: number, high: number }} Range */
 /** @typedef {(step: number, ranges: Range[], out: Float32Array) => void} Policy */
 
-/** Seconds of a step that the rhythms below are made for. */
+/** Seconds per step for which the rhythms below are made. */
 const STEP = 0.005;
 
 /**

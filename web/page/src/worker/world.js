@@ -152,7 +152,7 @@ export class LiveWorld {
     const { env, past, action } = this;
     if (stretch.cut && stretch.start === past.at) this.restore(stretch);
     const { action: done, drawn, pull } = past.deed(stretch);
-    if (drawn) env.sampleAction(action); // so that chance goes on as it did
+    if (drawn) env.sampleAction(action); // so that random numbers continue as they did
     action.set(done);
     env.clearForces();
     if (pull) env.pull(pull.body, pull.force, pull.at);

@@ -46,7 +46,7 @@ impl Builder<'_> {
         Ok(any)
     }
 
-    /// Merges a new facet that is alone with its horizon.
+    /// Merges a new facet into its horizon if no other new facet has that horizon.
     fn merge_alone(&mut self, facet: Id, horizon: Id) -> HullResult {
         for i in 1..self.facets[facet].vertices.len() {
             let vertex = self.facets[facet].vertices[i];
@@ -105,8 +105,8 @@ impl Builder<'_> {
         Ok(())
     }
 
-    /// Gives the horizon the neighbours of the ring (`qh_mergecycle_neighbors`); returns the mark of the ring's facets, after
-    /// which that of the horizon's neighbours comes.
+    /// Transfers the neighbours of the ring to the horizon (`qh_mergecycle_neighbors`). Returns the mark of the ring's facets;
+    /// the next mark is that of the horizon's neighbours.
     fn ring_neighbors(&mut self, ring: &[Id], horizon: Id) -> HullResult<u32> {
         self.visit += 1;
         let mark = self.visit;
@@ -167,7 +167,7 @@ impl Builder<'_> {
         }
     }
 
-    /// Gives the horizon the edges of the ring (`qh_mergecycle_ridges`).
+    /// Transfers the edges of the ring to the horizon (`qh_mergecycle_ridges`).
     fn ring_ridges(&mut self, ring: &[Id], horizon: Id, mark: u32) -> HullResult {
         let mut ridges = std::mem::take(&mut self.facets[horizon].ridges);
         ridges.retain(|&ridge| self.facets[self.ridges[ridge].other(horizon)].visit != mark);
@@ -230,7 +230,7 @@ impl Builder<'_> {
         Ok(())
     }
 
-    /// Gives the vertices of the ring the horizon in place of its facets (`qh_mergecycle_vneighbors`).
+    /// Replaces the ring's facets by the horizon in the vertices of the ring (`qh_mergecycle_vneighbors`).
     fn ring_vertices(&mut self, ring: &[Id], horizon: Id, mark: u32, apex: Id) {
         self.facets[horizon].visit = mark;
         self.vertex_visit += 1;

@@ -87,7 +87,7 @@ impl Builder<'_> {
         }
     }
 
-    /// Gives a triangle entries for its edges: it is none any more (`qh_makeridges`).
+    /// Gives a facet entries for its edges, because it is no longer a triangle (`qh_makeridges`).
     pub(super) fn make_ridges(&mut self, facet: Id) -> HullResult {
         if !self.facets[facet].simplicial {
             return Ok(());
@@ -161,7 +161,7 @@ impl Builder<'_> {
         Ok(())
     }
 
-    /// Takes a facet from a vertex; one that has less than two facets left is not a corner.
+    /// Removes a facet from a vertex; a vertex with fewer than two facets left is not a corner.
     fn leave_facet(&mut self, vertex: Id, facet: Id, into: Id) {
         drop_swapping(&mut self.vertices[vertex].neighbors, facet);
         if self.vertices[vertex].neighbors.len() < 2 {
@@ -190,7 +190,8 @@ impl Builder<'_> {
         Ok(())
     }
 
-    /// Takes a merged facet from a neighbour of both; its first neighbour stays in the first place, as the horizon is there.
+    /// Removes a merged facet from a neighbour of both; the neighbour's first neighbour stays first, because that is the
+    /// horizon.
     fn replace_beside(&mut self, neighbor: Id, facet: Id, into: Id) -> HullResult {
         let neighbors = &mut self.facets[neighbor].neighbors;
         if neighbors.first() == Some(&facet) {
@@ -251,7 +252,7 @@ impl Builder<'_> {
         drop_swapping(&mut self.facets[bottom].ridges, ridge);
     }
 
-    /// Hands the mark of an edge to another between the same facets (`qh_copynonconvex`).
+    /// Copies the mark of an edge to another edge between the same facets (`qh_copynonconvex`).
     pub(super) fn copy_nonconvex(&mut self, ridge: Id) {
         let (top, bottom) = (self.ridges[ridge].top, self.ridges[ridge].bottom);
         self.ridges[ridge].nonconvex = false;
@@ -315,7 +316,7 @@ impl Builder<'_> {
             .find(|vertex| !edge.contains(vertex))
     }
 
-    /// Adds a vertex in its place; returns whether it was not there (`qh_addfacetvertex`).
+    /// Adds a vertex in its place; returns whether it was new (`qh_addfacetvertex`).
     pub(super) fn add_vertex(&mut self, facet: Id, vertex: Id) -> bool {
         let vertices = &mut self.facets[facet].vertices;
         let place = vertices

@@ -6,7 +6,7 @@ use crate::math::qhull::parts::{FORCED, HullFailure, HullResult, Id, Merge, Merg
 use crate::math::qhull::plane::square_distance;
 use crate::math::qhull::tolerance::larger;
 
-/// How many greatest widths facets at a shared edge may be from each other (`qh_WIDEduplicate`).
+/// Largest distance of facets at a shared edge from each other, in greatest widths (`qh_WIDEduplicate`).
 const TOO_FAR: f64 = 100.0;
 
 impl Builder<'_> {
@@ -139,7 +139,7 @@ impl Builder<'_> {
         .and_then(|()| self.check_distinct(facet))
     }
 
-    /// Refuses facets with two vertices at the same place, whose plane means nothing.
+    /// Refuses facets with two vertices at the same place, because their plane has no meaning.
     fn check_distinct(&self, facet: Id) -> HullResult {
         let vertices = &self.facets[facet].vertices;
         let twice = |i: usize, j: usize| square_distance(self.place(vertices[i]), self.place(vertices[j])) == 0.0;

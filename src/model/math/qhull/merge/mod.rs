@@ -11,11 +11,11 @@ mod tests;
 use super::Builder;
 use super::parts::{HullFailure, HullResult, Id, Merge, MergeReason};
 
-/// More vertices than this, and facets are compared by their centres (`qh_BESTcentrum2 * 3 + qh_BESTcentrum`).
+/// Number of vertices above which facets are compared by their centres (`qh_BESTcentrum2 * 3 + qh_BESTcentrum`).
 const MANY_VERTICES: usize = 26;
-/// More vertices than this, and only neighbours over edges are compared that were found not convex (`3 + qh_BESTnonconvex`).
+/// Number of vertices above which only neighbours across edges that were found not convex are compared (`3 + qh_BESTnonconvex`).
 const SOME_VERTICES: usize = 18;
-/// How many greatest widths a merge may move a plane before it is an error (`qh_WIDEmaxoutside`).
+/// Distance by which a merge may move a plane before it is an error, in greatest widths (`qh_WIDEmaxoutside`).
 const TOO_WIDE: f64 = 100.0;
 /// Number of vertices up to which a facet gets a new centre with every merge (`3 + qh_MAXnewcentrum`).
 const FEW_VERTICES: usize = 8;
@@ -39,7 +39,7 @@ impl Builder<'_> {
         self.merge_all(merged)
     }
 
-    /// Does all merges that are noted, tests what they changed, and begins again (`qh_all_merges`).
+    /// Does all noted merges, tests the facets that they changed, and repeats until nothing is left (`qh_all_merges`).
     pub(super) fn merge_all(&mut self, merged_before: bool) -> HullResult {
         let mut before = merged_before;
         loop {
@@ -184,8 +184,8 @@ impl Builder<'_> {
         Ok(())
     }
 
-    /// Ends what would go on for ever, or for minutes: a hull is done long before there are so many facets and merges, and a cap of ten
-    /// thousand edges, which each of its merges goes through, before there was so much work.
+    /// Fails for hulls that would take minutes or never end. A hull is done long before it has so many facets and merges. Even a cap of
+    /// ten thousand edges, all of which each of its merges visits, needs less work.
     fn check_pace(&self) -> HullResult {
         let most = 1000 + 200 * self.points.len();
         if self.facets.len() > most || self.merge_count as usize > most || self.work > MOST_WORK {

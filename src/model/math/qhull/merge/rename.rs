@@ -6,7 +6,7 @@ use crate::math::qhull::parts::{
     HullFailure, HullResult, Id, MergeReason, NONE, TAIL, VertexMerge, drop_sorted, drop_swapping, push_unique,
 };
 
-/// How many greatest widths apart vertices may be that are merged (`qh_WIDEpinched`).
+/// Largest distance of vertices that are merged, in greatest widths (`qh_WIDEpinched`).
 const PINCHED: f64 = 100.0;
 
 impl Builder<'_> {
@@ -43,7 +43,7 @@ impl Builder<'_> {
         ridges
     }
 
-    /// Returns the edges that a vertex is on (`qh_vertexridges`); the last facet has no others, and is left out unless asked for.
+    /// Returns the edges that a vertex is on (`qh_vertexridges`); the last facet has no others, and is left out unless requested.
     fn all_vertex_ridges(&mut self, vertex: Id, last_too: bool) -> Vec<Id> {
         self.visit += 2;
         let neighbors = self.vertices[vertex].neighbors.clone();
@@ -129,7 +129,7 @@ impl Builder<'_> {
         self.test_degenerate(facet)
     }
 
-    /// Takes a vertex from all its facets.
+    /// Removes a vertex from all its facets.
     fn leave_all(&mut self, old: Id) -> HullResult {
         let mut i = 0;
         while let Some(&neighbor) = self.vertices[old].neighbors.get(i) {
@@ -249,7 +249,7 @@ impl Builder<'_> {
         }
     }
 
-    /// Takes the merge of the nearest vertices (`qh_next_vertexmerge`).
+    /// Removes and returns the merge of the nearest vertices (`qh_next_vertexmerge`).
     fn next_vertex_merge(&mut self) -> HullResult<Option<VertexMerge>> {
         let mut best = (NONE as usize, f64::MAX);
         let mut i = 0;
@@ -272,7 +272,7 @@ impl Builder<'_> {
         Ok(Some(self.vertex_merges.swap_remove(best.0)))
     }
 
-    /// Replaces a vertex by one beside it in all facets (`qh_rename_adjacentvertex`); its point is handed on.
+    /// Replaces a vertex by an adjacent one in all facets (`qh_rename_adjacentvertex`); its point is reassigned.
     fn rename_everywhere(&mut self, old: Id, into: Id) -> HullResult {
         self.merge_count += 1;
         if self.vertices[old].deleted || self.vertices[into].deleted {
@@ -324,7 +324,7 @@ impl Builder<'_> {
         Ok(())
     }
 
-    /// Replaces a vertex of a triangle, in whose order it has another place (`qh_replacefacetvertex`).
+    /// Replaces a vertex of a triangle by one with another place in the order (`qh_replacefacetvertex`).
     fn replace_vertex(&mut self, facet: Id, old: Id, into: Id) -> HullResult {
         let entry = &mut self.facets[facet];
         let before = entry

@@ -5,7 +5,7 @@ use crate::math::qhull::Builder;
 use crate::math::qhull::parts::{HullResult, Id, MergeReason, NONE};
 
 impl Builder<'_> {
-    /// Tells whether all new facets are clearly convex, by their vertices (`qh_checkzero`). Then nothing is merged.
+    /// Returns whether all new facets are clearly convex, by their vertices (`qh_checkzero`). Then nothing is merged.
     pub(super) fn clearly_convex(&mut self) -> HullResult<bool> {
         let all = self.facets_from(self.new_facets);
         for &facet in &all {
