@@ -30,6 +30,8 @@ pub type Answer = Result<Vec<u8>, String>;
 pub struct Ask {
     pub words: String,
     pub reply: SyncSender<Answer>,
+    /// Whether the program has received it: a large picture may then take longer than a busy program has to receive it.
+    received: Arc<AtomicBool>,
 }
 
 /// A server on the loopback interface.
@@ -88,7 +90,10 @@ impl Server {
     /// Waits for a question, up to a time limit.
     pub fn ask(&self, wait: Duration) -> Option<Ask> {
         match self.asks.recv_timeout(wait) {
-            Ok(ask) => Some(ask),
+            Ok(ask) => {
+                ask.received.store(true, Ordering::Relaxed);
+                Some(ask)
+            }
             Err(RecvTimeoutError::Timeout) => None,
             Err(RecvTimeoutError::Disconnected) => {
                 thread::sleep(wait);
@@ -253,10 +258,20 @@ fn answer(request: &Request, shared: &Shared) -> (&'static str, &'static str, Ve
         ("POST", "frame") => {
             let (reply, answers) = sync_channel(1);
             let words = request.body.clone();
-            if shared.asks.try_send(Ask { words, reply }).is_err() {
+            let received = Arc::new(AtomicBool::new(false));
+            let ask = Ask {
+                words,
+                reply,
+                received: received.clone(),
+            };
+            if shared.asks.try_send(ask).is_err() {
                 return say("503 Service Unavailable", "the program is busy, or has ended");
             }
-            match answers.recv_timeout(BUSY) {
+            let mut answer = answers.recv_timeout(BUSY);
+            if answer == Err(RecvTimeoutError::Timeout) && received.load(Ordering::Relaxed) {
+                answer = answers.recv_timeout(PATIENCE);
+            }
+            match answer {
                 Ok(Ok(frame)) => ("200 OK", "application/octet-stream", frame),
                 Ok(Err(text)) => say("400 Bad Request", &text),
                 Err(_) => say("503 Service Unavailable", "the program is busy, or has ended"),
