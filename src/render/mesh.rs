@@ -435,7 +435,7 @@ mod tests {
         check(&Mesh::capsule(), 1736);
         check(&Mesh::cylinder(), 1736);
         check(&Mesh::cube(), 192);
-        check(&Mesh::pipe(), 560);
+        check(&Mesh::pipe(), 896);
         check(&Mesh::plane(), 2);
         check(&crate::lattice::Lattice::new([1.0, 2.0, 0.25], 100.0, None).mesh(), 64);
     }

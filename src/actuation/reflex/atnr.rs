@@ -1,8 +1,7 @@
 //! The asymmetric tonic neck reflex: when the head is turned, arm and leg of the face's side stretch and the others bend.
 
 use super::motors::{Motor, Motors};
-use super::tables::Built;
-use super::{LoopInput, MotorCommand, ReflexLoop, follow, ramp};
+use super::{Built, LoopInput, MotorCommand, ReflexLoop, follow, ramp};
 use crate::actuation::ActuationError;
 use crate::config::Config;
 use crate::mimo::reflexes::{ATNR, ATNR_ARM_AGES, ATNR_ARM_GAINS, ATNR_EFFORT, ATNR_TIMES, at_age};

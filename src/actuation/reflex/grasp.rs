@@ -2,8 +2,7 @@
 
 use super::contacts::{Watched, side};
 use super::motors::{Motor, Motors};
-use super::tables::Built;
-use super::{LoopInput, MotorCommand, ReflexLoop};
+use super::{Built, LoopInput, MotorCommand, ReflexLoop};
 use crate::actuation::ActuationError;
 use crate::config::Part;
 use crate::mimo::{body_kind, reflexes};

@@ -55,6 +55,13 @@ trait ReflexLoop: Send + Sync {
     fn act(&self, input: &mut LoopInput<'_>, commands: &mut [MotorCommand]) -> f64;
 }
 
+/// A loop, and for how many ms a stimulus waits in it.
+struct Built {
+    inner: Box<dyn ReflexLoop>,
+    /// Part of the delay that passes in the loop itself, ms.
+    inside: f64,
+}
+
 /// What a loop acts on.
 struct LoopInput<'a> {
     /// The state before the physics step, of which positions, velocities and parameters alone are known.

@@ -1,8 +1,7 @@
 //! The Moro reflex: when the head drops, the arms spread and stretch, then close. It runs its course once, whatever happens meanwhile.
 
 use super::motors::{Motor, Motors};
-use super::tables::Built;
-use super::{LoopInput, MotorCommand, ReflexLoop};
+use super::{Built, LoopInput, MotorCommand, ReflexLoop};
 use crate::actuation::ActuationError;
 use crate::config::Config;
 use crate::mimo::reflexes::{

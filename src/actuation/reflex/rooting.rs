@@ -2,8 +2,7 @@
 
 use super::contacts::Watched;
 use super::motors::{Motor, Motors};
-use super::tables::Built;
-use super::{LoopInput, MotorCommand, ReflexLoop};
+use super::{Built, LoopInput, MotorCommand, ReflexLoop};
 use crate::actuation::ActuationError;
 use crate::math::{Vec3, add_scaled, dot, sub};
 use crate::mimo::reflexes;

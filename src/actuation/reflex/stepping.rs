@@ -3,8 +3,7 @@
 
 use super::contacts::{Watched, side};
 use super::motors::{Motor, Motors};
-use super::tables::Built;
-use super::{LoopInput, MotorCommand, ReflexLoop, follow, ramp};
+use super::{Built, LoopInput, MotorCommand, ReflexLoop, follow, ramp};
 use crate::actuation::ActuationError;
 use crate::mimo::reflexes;
 use crate::model::Model;

@@ -2,8 +2,7 @@
 //! out: in a torque motor it would only weaken the answer.
 
 use super::motors::{Motor, Motors};
-use super::tables::Built;
-use super::{LoopInput, MotorCommand, ReflexLoop, ramp};
+use super::{Built, LoopInput, MotorCommand, ReflexLoop, ramp};
 use crate::actuation::ActuationError;
 use crate::config::Config;
 use crate::mimo::reflexes::{STRETCH, STRETCH_AGES, STRETCH_SHARES, at_age};

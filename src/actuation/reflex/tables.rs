@@ -1,7 +1,7 @@
 //! What the reflexes of all environments of a configuration share.
 
 use super::motors::Motors;
-use super::{ReflexLoop, atnr, grasp, moro, rooting, stepping, stretch, vor};
+use super::{Built, ReflexLoop, atnr, grasp, moro, rooting, stepping, stretch, vor};
 use crate::actuation::{Actuation, ActuationError};
 use crate::config::{Config, Reflex};
 use crate::mimo::reflexes;
@@ -103,13 +103,6 @@ impl ReflexTables {
     pub(super) fn memory(&self) -> usize {
         1 + self.loops.iter().map(PlacedLoop::memory).sum::<usize>()
     }
-}
-
-/// A loop, and for how many ms a stimulus waits in it.
-pub(super) struct Built {
-    pub inner: Box<dyn ReflexLoop>,
-    /// Part of the delay that passes in the loop itself, ms.
-    pub inside: f64,
 }
 
 /// The age of the original proportions, months.

@@ -5,8 +5,7 @@
 //! correction: a proportional loop alone would saturate at a gain of 0.6.
 
 use super::motors::{Motor, Motors};
-use super::tables::Built;
-use super::{LoopInput, MotorCommand, ReflexLoop};
+use super::{Built, LoopInput, MotorCommand, ReflexLoop};
 use crate::actuation::ActuationError;
 use crate::config::{Config, ReflexVor};
 use crate::math::{Vec3, cross, dot, mat_vec};
