@@ -33,8 +33,8 @@ SETTINGS = {
 
 
 def ages_of(steps: int) -> dict[str, Any]:
-    """Returns the ages of each learner over a training of some steps: the last fifth is at the last age."""
-    until = steps * 4 // 5
+    """Returns the ages of each learner over a training of some steps: the last fifth, at least an episode, is at the last age."""
+    until = min(steps * 4 // 5, steps - STEPS)
     return {
         "grows": {0: YOUNG, until: OLD},
         "shrinks": {0: OLD, until: YOUNG},

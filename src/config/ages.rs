@@ -12,7 +12,8 @@ pub(super) fn schedule() -> &'static Key {
     &KEYS[schedule_index()]
 }
 
-fn schedule_index() -> usize {
+/// Returns its index.
+pub(super) fn schedule_index() -> usize {
     let mut keys = KEYS.iter();
     let found = keys.position(|key| matches!(key.kind, KeyKind::NoneOrAges { .. }));
     found.unwrap_or_default()

@@ -135,9 +135,7 @@ impl KeyKind {
                 format!("none, or a list in brackets of some of {}, each once", names.join(", "))
             }
             Self::NoneOrAges { max } => {
-                format!(
-                    "none, or a mapping of rising steps, the first 0, to ages from 0 to {max} months, such as {{0: 1, 500000: 6}}"
-                )
+                format!("none, or ages to {max} months by rising steps from 0, as in {{0: 1, 500000: 6}}")
             }
             Self::Document => "text of up to 1 MiB, of any number of lines".to_string(),
             Self::Text => {

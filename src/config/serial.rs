@@ -78,6 +78,7 @@ impl<'de> Visitor<'de> for ConfigVisitor {
     fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<Config, A::Error> {
         let mut config = Config::default();
         let mut seen = vec![false; KEYS.len()];
+        let mut by_age = false; // whether `age` is a schedule
         while let Some(index) = map.next_key_seed(KeySeed)? {
             let key = &KEYS[index];
             if std::mem::replace(&mut seen[index], true) {
@@ -86,7 +87,12 @@ impl<'de> Visitor<'de> for ConfigVisitor {
             let value = map.next_value_seed(ValueSeed { key })?;
             let own = ages::of_value(index, &value);
             let key = &KEYS[own];
-            if own != index && std::mem::replace(&mut seen[own], true) {
+            if own != index {
+                by_age = true;
+            } else if by_age && own == ages::schedule_index() && value == KeyValue::None {
+                continue; // of a map of all keys, in which `age` has become a schedule
+            }
+            if by_age && !config.age_schedule.is_empty() && own == ages::schedule_index() {
                 return Err(A::Error::duplicate_field(key.name));
             }
             if !key.assign(&mut config, &value) {
@@ -94,6 +100,7 @@ impl<'de> Visitor<'de> for ConfigVisitor {
                 return Err(A::Error::custom(refusal));
             }
         }
+        seen[ages::schedule_index()] |= by_age;
         if config.behavior != Config::default().behavior {
             // only keys that are missing take the default of the task; a map that holds all keys comes back as it was written
             config.take_defaults(|key| seen[key]);

@@ -158,7 +158,7 @@ config! {
     }
     GROWTH {
         age: Option<f64> = None, AGE, "The age of MIMo's body, months; none for the original proportions.";
-        age_schedule: AgeSchedule = AgeSchedule::default(), AGES, "The ages of a MIMo who grows while he learns, months over steps of the environment; `age: {0: 1, 500000: 6}` sets it, too." + "Each episode begins at the age of its first step.";
+        age_schedule: AgeSchedule = AgeSchedule::default(), AGES, "Ages of a MIMo who grows; `age` takes them, too." + "They are months by steps of the environment, as in `age: {0: 1, 500000: 6}`. Each episode begins at the age of its first step.";
         age_grid: f64 = 0.25, GRID, "Ages between two points of `age_schedule` are multiples of this, months.";
         strength_age: Option<f64> = None, AGE, "The age of MIMo's strength, months; none for that of his body.";
         strength: StrengthModel = StrengthModel::Volume, Choice(StrengthModel::NAMES), "What the strength of motors and muscles follows." + "`volume` follows the part that carries them, `infant` ratios to the torque of gravity at each age, calibrated on what infants can do.";
