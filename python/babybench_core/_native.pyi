@@ -340,8 +340,8 @@ class Env:
     def touch_contacts(self) -> dict[str, _Array]:
         """Returns the contacts with skin, an entry for each side with sensors.
 
-        Entries: ``contact`` (index in :meth:`contacts`), ``body``, ``geom``, ``other`` (geom, -1 for a flex), ``normal`` (N), ``force``
-        and ``point`` (world, N and m), ``force_body`` and ``point_body`` (frame of the body).
+        Entries: ``contact`` (index in :meth:`contacts`), ``body``, ``geom``, ``other`` (geom, -1 for a flex), ``normal`` (N),
+        ``force`` and ``point`` (world, N and m), ``force_body`` and ``point_body`` (frame of the body).
         """
     @property
     def reflexes(self) -> list[str]:

@@ -235,7 +235,8 @@ def table(folder: Path, out: Path, speed: bool) -> None:
         "## Environments",
         _markdown(["package", "environment", "apart", "MuJoCo nudged", "note", "commit", *last], rows),
     ]
-    out.write_text("\n\n".join(text) + "\n")
+    lines = "\n\n".join(text).splitlines()
+    out.write_text("\n".join(line.rstrip() for line in lines) + "\n")
 
 
 def _markdown(head: list[str], rows: list[list[str]]) -> str:

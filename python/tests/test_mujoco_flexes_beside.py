@@ -1,4 +1,4 @@
-"""Flexes of ``babybench.mujoco`` beside MuJoCo 3.3.0: the arrays of models, and those of states while a cloth, a rope and a soft cube fall."""
+"""Flexes of ``babybench.mujoco`` beside MuJoCo 3.3.0: arrays of models, and of states while they fall."""
 
 from __future__ import annotations
 
@@ -19,10 +19,12 @@ FLEXES = """<mujoco><asset><material name="red" rgba="1 0 0 1"/></asset><worldbo
   <flexcomp name="rope" dim="1" count="6 1 1" spacing=".05 .05 .05" pos=".5 0 .1" mass=".1" radius=".01">
     <pin id="0"/><contact selfcollide="none" internal="false"/><edge stiffness="30" damping=".1"/>
   </flexcomp>
-  <flexcomp name="cube" dim="3" count="3 3 3" spacing=".05 .05 .05" pos="-.5 0 .1" mass=".2" radius=".005" rgba=".1 .2 .3 .4" flatskin="true">
+  <flexcomp name="cube" dim="3" count="3 3 3" spacing=".05 .05 .05" pos="-.5 0 .1" mass=".2"
+      radius=".005" rgba=".1 .2 .3 .4" flatskin="true">
     <elasticity young="1e3" poisson=".1" damping=".01"/><contact selfcollide="none" internal="false"/>
   </flexcomp></worldbody>
-  <deformable><flex name="fixed" body="world" vertex="0 0 1 1 0 1 0 1 1" element="0 1 2" texcoord="0 0 1 0 0 1" group="2"/></deformable></mujoco>"""
+  <deformable><flex name="fixed" body="world" vertex="0 0 1 1 0 1 0 1 1" element="0 1 2"
+    texcoord="0 0 1 0 0 1" group="2"/></deformable></mujoco>"""
 NOT_KEPT = {"flex_bvhadr", "flex_bvhnum", "flex_vert0", "flexelem_aabb", "name_flexadr"}
 
 

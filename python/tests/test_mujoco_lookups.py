@@ -46,8 +46,8 @@ def test_a_name_that_does_not_exist_is_answered_with_a_similar_one(model: mujoco
     data = mujoco.MjData(model)
     for owner in (model, data):
         with pytest.raises(
-            KeyError, match=r"Invalid name 'hed'; did you mean `head`\? Valid names: \['head', 'world'\]"
+            KeyError, match=r"Invalid name 'heads'; did you mean `head`\? Valid names: \['head', 'world'\]"
         ):
-            owner.body("hed")
+            owner.body("heads")
         with pytest.raises(KeyError, match=r"Invalid name 'shoulder'\. Valid names: \['neck'\]"):
             owner.joint("shoulder")

@@ -34,7 +34,7 @@ _EMPTY: dict[str, dict[int, str]] = {
         21: "flex_stiffness",
     },
 }
-"""The fields of flexes and plugins by type and numbers in a row. No document with plugins loads here. Models with flexes have most of theirs."""
+"""The fields of flexes and plugins by type and numbers in a row: no plugins load here, and most fields of flexes are there."""
 
 EMPTY: dict[str, tuple[str, int]] = {
     name: (dtype, width) for dtype, rows in _EMPTY.items() for width, names in rows.items() for name in names.split()
