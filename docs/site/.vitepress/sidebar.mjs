@@ -64,6 +64,7 @@ export const sidebar = [
         endurance: "Endurance",
         "crash-safety": "Crash safety",
         history: "Figures over time",
+        packages: "Other packages' environments",
       }),
     ],
   },
