@@ -132,7 +132,7 @@ function blanket() {
 
 test("a skin bends with its bodies", async () => {
   const page = await host.open();
-  await drop(page, "blanket.xml", Buffer.from(bare.replace("<worldbody>", `${blanket()}<worldbody>`)));
+  await drop(page, "sheet.xml", Buffer.from(bare.replace("<worldbody>", `${blanket()}<worldbody>`)));
   await until(page, () => mimo.scene.drawables.some((d) => d.worn));
   const places = () => page.evaluate(() => {
     const { mesh } = mimo.stage.bodies.batches.find(({ of }) => mimo.scene.drawables[of[0]].worn);
