@@ -192,7 +192,7 @@ def draw(rows: list[Row]) -> None:
     figure, axes = pyplot.subplots(1, len(groups), figsize=(11, 3.2), sharex=True, layout="constrained")
     for axis, (title, names) in zip(axes, groups.items()):
         for name in names:
-            points = [(k, float(row[name])) for k, row in enumerate(rows) if row[name]]
+            points = [(k, float(row[name])) for k, row in enumerate(rows, 1) if row[name]]
             if points:
                 label = name.rsplit("_", 1)[0].replace("_", " ")
                 axis.plot(
@@ -220,7 +220,9 @@ def add(note: str) -> None:
     row = measure()
     with FILE.open("a", encoding="utf-8", newline="") as opened:
         csv.DictWriter(opened, COLUMNS, restval="", lineterminator="\n").writerow({**row, "note": note})
-    draw(history())
+    rows = history()
+    if len(rows) > 1:  # a chart of one line shows nothing
+        draw(rows)
 
 
 def main() -> None:
