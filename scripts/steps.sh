@@ -29,8 +29,8 @@ steps_of() { part=$1; }
 
 duration() { printf '%d min %02d s' $(($1 / 60)) $(($1 % 60)); } # SECONDS
 
-note() { # NAME RESULT SECONDS DETAIL
-  printf '%s\t%s\t%s\t%s\t%s\n' "$part" "$@" >>"$notes/results"
+note() { # NAME RESULT SECONDS DETAIL [SECONDS OF PROCESSORS]
+  printf '%s\t%s\t%s\t%s\t%s\t%s\n' "$part" "${@:1:3}" "${5:-0}" "$4" >>"$notes/results"
 }
 
 # Adds up the closing lines of cargo test, pytest and node's test runner. Prints "12 passed, 1 failed, 3 ignored", or nothing.
@@ -64,9 +64,20 @@ reasons() { # LOG
     -e "s/^ *﹣ .* \([0-9.]+ms\) # (.*)\$/1$tab\1/p" "$1"
 }
 
+# Sets `processor` to the seconds of processor time that this shell has waited for.
+count_processor_time() {
+  local user system file=$notes/times_$BASHPID
+  times >"$file" # in this shell: another one would tell its own
+  { read -r; read -r user system; } <"$file"
+  processor=$(awk -F '[ms ]+' '{ printf "%d", $1 * 60 + $2 + $3 * 60 + $4 }' <<<"$user $system")
+  rm "$file"
+}
+
 step() { # NAME COMMAND...
-  local name=$1 started=$SECONDS code log result=passed count reason
+  local name=$1 started=$SECONDS code log result=passed count reason processor used
   shift
+  count_processor_time
+  used=$processor
   log=$notes/${part}_${name//[^a-zA-Z0-9]/_}.log
   printf '\n=== %s: %s\n' "$part" "$name"
   set +e
@@ -75,7 +86,9 @@ step() { # NAME COMMAND...
   set -e
   if [ "$code" -ne 0 ]; then result=failed; fi
   step_code=$code
-  note "$name" "$result" $((SECONDS - started)) "$(counts "$log")"
+  count_processor_time
+  used=$((processor - used))
+  note "$name" "$result" $((SECONDS - started)) "$(counts "$log")" "$used"
   reasons "$log" | while IFS=$'\t' read -r count reason; do printf '%s\t%s\t%s\n' "$part" "$count" "$reason" >>"$notes/ignored"; done
   printf -- '--- %s: %s: %s, %s\n' "$part" "$name" "$result" "$(duration $((SECONDS - started)))"
 }
@@ -101,16 +114,16 @@ lack() { # NAME REASON
 }
 
 summary() {
-  local part name result seconds detail
+  local part name result seconds detail used
   echo '=== summary'
-  while IFS=$'\t' read -r part name result seconds detail; do
+  while IFS=$'\t' read -r part name result seconds used detail; do
     if [ "$result" = ignored ]; then
       printf '%-7s %-34s ignored\n' "$part" "$name"
     else
-      printf '%-7s %-34s %-7s %14s   %s\n' "$part" "$name" "$result" "$(duration "$seconds")" "$detail"
+      printf '%-7s %-34s %-7s %14s %6d s of CPU   %s\n' "$part" "$name" "$result" "$(duration "$seconds")" "$used" "$detail"
     fi
   done <"$notes/results"
-  awk -F '\t' '$3 == "ignored" { printf "ignored: %s: %s: %s\n", $1, $2, $5 }' "$notes/results"
+  awk -F '\t' '$3 == "ignored" { printf "ignored: %s: %s: %s\n", $1, $2, $6 }' "$notes/results"
   # each reason once, with the number of tests
   awk -F '\t' '
     { reason = $1 ": " $3; if (!(reason in tests)) order[++n] = reason; tests[reason] += $2 }
