@@ -7,11 +7,11 @@ Example:
     >>> observation, reward, terminated, truncated, info = env.step(env.action_space.sample())
     >>> env.close()
 
-:func:`make` and :class:`Env` are one environment, :class:`VectorEnv` is many, ``babybench.sb3`` is many for
-Stable-Baselines3, ``babybench.pettingzoo`` is two infants in one room, :class:`ActionNoise` moves them at random,
+:func:`make` and :class:`Env` give one environment, :class:`VectorEnv` many, ``babybench.sb3`` many for
+Stable-Baselines3, and ``babybench.pettingzoo`` two infants in one room. :class:`ActionNoise` moves them at random,
 :func:`view` shows them in a browser or a notebook, and :func:`film` makes a recording for notebooks.
-Importing the package tells Gymnasium the names ``babybench/SelfTouch-v0``,
-``babybench/HandRegard-v0``, ``babybench/Installation-v0`` and, of tasks with a reward, ``babybench/Reach-v0``,
+Importing the package registers with Gymnasium ``babybench/SelfTouch-v0``,
+``babybench/HandRegard-v0``, ``babybench/Installation-v0`` and, for tasks with a reward, ``babybench/Reach-v0``,
 ``babybench/Standup-v0``, ``babybench/SelfBody-v0``, ``babybench/Catch-v0``, ``babybench/RollOver-v0``,
 ``babybench/Mobile-v0`` and ``babybench/Play-v0``.
 ``babybench.utils``, ``babybench.eval``, ``babybench.build_xml`` and ``mimoEnv`` are those of the BabyBench starter

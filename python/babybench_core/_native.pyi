@@ -72,7 +72,7 @@ def config_examples() -> dict[str, dict[str, Any]]:
     """Returns the example configurations: ``self_touch``, ``hand_regard``, ``test_installation`` and those of tasks."""
 
 def config_from_mapping(mapping: Mapping[str, object]) -> dict[str, Any]:
-    """Checks a configuration and returns all its keys; those left out have their default."""
+    """Checks a configuration and returns all its keys; missing keys get their default."""
 
 def config_from_yaml(text: str, file: str = "configuration", folder: str | os.PathLike[str] = ...) -> dict[str, Any]:
     """Reads a configuration from YAML and returns all its keys.
@@ -163,10 +163,10 @@ class Blueprint:
         touch_spacing: Sequence[tuple[str, float]] = ...,
         assets: str | os.PathLike[str] | None = None,
     ) -> Blueprint:
-        """Compiles a document, or without one the configuration's, for a program that puts resets and steps together.
+        """Compiles a document, by default the configuration's, for a program that composes its own resets and steps.
 
-        ``folder`` is the document's, and absolute; ``files`` replace some of its files; ``touch_spacing`` are bodies and the
-        distances between their touch sensors, m.
+        ``folder`` is the document's absolute folder; ``files`` replace some of its files; ``touch_spacing`` lists bodies with
+        the distances between their touch sensors, m.
         """
 
     @property
@@ -200,11 +200,11 @@ class Env:
     def __new__(cls, blueprint: Blueprint, views: bool = False, lazy: bool = False) -> Env:
         """Makes an environment; with ``views``, observations are read-only arrays that each step updates.
 
-        With ``lazy``, observations and their spaces are without images: :meth:`eyes` has them.
+        With ``lazy``, observations and their spaces have no images: :meth:`eyes` returns them.
         """
 
     def reset(self, seed: int | None = None) -> dict[str, _Array]:
-        """Starts an episode: the settled state, then ten random start actions (not without behavior).
+        """Starts an episode: the settled state, then ten random start actions (none without a behavior).
 
         Under ``compat: api`` a seed reseeds every random choice; under ``compat: reference`` it is ignored:
         see :meth:`seed_action_space` and :meth:`reset_with`.
@@ -301,7 +301,7 @@ class Env:
     def restore(self, snapshot: bytes) -> None:
         """Goes back to a snapshot of this environment, or of another of the same configuration and scene."""
     def resume(self, snapshot: bytes) -> dict[str, _Array]:
-        """Goes back to a snapshot, with touch and images computed; returns the observation."""
+        """Goes back to a snapshot and computes touch and images; returns the observation."""
     def swap_facial_expression(self, expression: str) -> None:
         """Changes MIMo's face in all later pictures.
 
@@ -311,7 +311,7 @@ class Env:
     def model_array(self, name: str) -> _Array:
         """Returns an array of the model by MuJoCo's name, with all changes, or an option: ``opt.gravity``."""
     def change_model(self, changes: dict[str, _Array]) -> None:
-        """Changes numbers of the model from the next step on; the arrays are whole."""
+        """Changes numbers of the model from the next step on; takes whole arrays."""
     def set_age(self, age: float | None) -> dict[str, Any]:
         """Sets MIMo's age, months; returns the configuration. The next call is a reset."""
     @property
@@ -354,16 +354,16 @@ class Env:
     def render(self, camera: _Camera, width: int, height: int) -> npt.NDArray[np.uint8]:
         """Draws from a camera of the scene or a free one, (height, width, 3), red, green, blue, rows from the top."""
     def depth(self, camera: _Camera, width: int, height: int) -> npt.NDArray[np.float32]:
-        """Draws the distance from the camera's plane, (height, width), m; infinite where nothing is."""
+        """Draws the distance from the camera's plane, (height, width), m; infinite where there is nothing."""
     def segmentation(self, camera: _Camera, width: int, height: int) -> npt.NDArray[np.int32]:
         """Draws the ids of geoms, (height, width); -1 in the background."""
 
 @final
 class ActionNoise:
-    """A noise over the actions of one environment."""
+    """Action noise for one environment."""
 
     def __new__(cls, noise: str, low: Sequence[float], high: Sequence[float], step: float, seed: int) -> ActionNoise:
-        """Makes a noise of its name, for actions between two bounds that are ``step`` seconds apart."""
+        """Makes a noise by name, for actions between two bounds, ``step`` seconds apart."""
     def sample(self) -> npt.NDArray[np.float32]:
         """Returns the next action."""
     def reset(self, seed: int) -> None:
@@ -400,11 +400,11 @@ class Watch:
     def __new__(cls, arrays: Sequence[_Array]) -> Watch:
         """Stores the contents of the arrays."""
     def changed(self, arrays: Sequence[_Array]) -> list[int]:
-        """Returns the numbers of the arrays that differ; the next call compares with these arrays."""
+        """Returns the indices of the arrays that differ; the next call compares with these arrays."""
 
 @final
 class MjcfDocument:
-    """A document as a tree of elements, beneath :class:`babybench.mujoco.MjSpec`. Elements are numbers."""
+    """A document as a tree of elements, the basis of :class:`babybench.mujoco.MjSpec`. Elements are numbers."""
 
     def __new__(cls) -> MjcfDocument: ...
     @staticmethod
@@ -416,7 +416,7 @@ class MjcfDocument:
     def copy(self) -> MjcfDocument:
         """Returns a separate document with the same elements under the same numbers."""
     def root(self) -> int:
-        """Returns the element of the whole document."""
+        """Returns the root element."""
     def world(self) -> int:
         """Returns the world."""
     def section(self, name: str) -> int:
@@ -434,15 +434,15 @@ class MjcfDocument:
     def unset(self, number: int, name: str) -> None:
         """Removes an attribute."""
     def get(self, number: int, name: str) -> str | None:
-        """Returns the text of an attribute that is given."""
+        """Returns the text of an attribute that the document gives."""
     def value(self, number: int, name: str) -> str:
         """Returns the text of an attribute with default classes applied."""
     def attributes(self, number: int) -> list[tuple[str, str]]:
-        """Returns the attributes that are given."""
+        """Returns the attributes that the document gives."""
     def parent(self, number: int) -> int | None:
-        """Returns the element that an element is in."""
+        """Returns the parent of an element."""
     def children(self, number: int) -> list[int]:
-        """Returns the elements in an element."""
+        """Returns the children of an element."""
     def element(self, number: int) -> str:
         """Returns the name of an element in MJCF."""
     def kind(self, number: int) -> str | None:
@@ -464,7 +464,7 @@ class MjcfDocument:
 
 @final
 class PhysicsModel:
-    """A model of any document, beneath :class:`babybench.mujoco.MjModel`."""
+    """A model of any document, the basis of :class:`babybench.mujoco.MjModel`."""
 
     ARRAYS: ClassVar[list[str]]
     """The names of :meth:`array`."""
@@ -491,17 +491,17 @@ class PhysicsModel:
     def names(self) -> dict[str, list[str]]:
         """Returns the names of all elements, by kind."""
     def settings(self) -> dict[str, Any]:
-        """Returns sizes, options, statistics and visual settings that no array has."""
+        """Returns sizes, options, statistics and visual settings that are in no array."""
     def set_option(self, name: str, value: int) -> None:
         """Sets a whole number among the options."""
     def extras(self) -> dict[str, Any]:
-        """Returns, as MuJoCo's arrays, what the engine keeps in another form."""
+        """Returns as MuJoCo's arrays the values that the engine stores in another form."""
     def shapes(self) -> dict[str, _Array]:
         """Returns the arrays of meshes, height fields, skins and flexes under MuJoCo's names."""
 
 @final
 class PhysicsData:
-    """A state of a model and the engine that advances it, beneath :class:`babybench.mujoco.MjData`."""
+    """A state of a model and the engine that advances it, the basis of :class:`babybench.mujoco.MjData`."""
 
     GROUPS: ClassVar[dict[str, int]]
     """The groups of arrays, as bits."""
@@ -520,7 +520,7 @@ class PhysicsData:
     def reset(self, key: int | None = None) -> None:
         """Resets, to a keyframe if given."""
     def flexes(self) -> dict[str, _Floats]:
-        """Returns the places of the vertices of flexes, and the lengths and rates of their edges."""
+        """Returns the positions of the vertices of flexes, and the lengths of their edges with the rates of these."""
     def step(self, count: int) -> None:
         """Advances by some time steps."""
     def ray(
@@ -534,11 +534,11 @@ class PhysicsData:
     def distance(
         self, geoms: tuple[int, int], most: float
     ) -> tuple[float, tuple[float, float, float], tuple[float, float, float]] | None:
-        """Returns the distance of two geoms below ``most``, and the points between which it is measured, m."""
+        """Returns the distance between two geoms, at most ``most``, and the points between which it is measured, m."""
     def forward(self, groups: int) -> None:
-        """Computes everything without advancing, and shows some groups of arrays."""
+        """Computes everything without advancing, and updates some groups of arrays."""
     def rne_post_constraint(self) -> None:
-        """Computes and shows the group ``post``."""
+        """Computes and updates the group ``post``."""
     def sensordata(self) -> _Floats:
         """Returns the values of the sensors as they were last computed."""
     def copy_from(self, other: PhysicsData) -> None:
@@ -547,15 +547,15 @@ class PhysicsData:
         """Returns the contacts as arrays, one entry for each."""
     @property
     def counts(self) -> tuple[int, int]:
-        """Number of contacts and of rows of constraints."""
+        """Number of contacts and of constraint rows."""
     def rows(self) -> dict[str, _Array]:
-        """Returns the rows of constraints as arrays, one entry for each."""
+        """Returns the constraint rows as arrays, one entry for each."""
     def jacobian(self) -> _Floats:
-        """Returns the Jacobian of the constraints in full, (nefc, nv)."""
+        """Returns the Jacobian of the constraints as a full matrix, (nefc, nv)."""
     def inertia(self) -> _Floats:
-        """Returns the joint-space inertia matrix in full, (nv, nv)."""
+        """Returns the joint-space inertia as a full matrix, (nv, nv)."""
     def tendon_jacobian(self) -> _Floats:
-        """Returns the rates of the lengths of tendons by velocities in full, (ntendon, nv)."""
+        """Returns the Jacobian of tendon lengths as a full matrix, (ntendon, nv)."""
 
 @final
 class PhysicsRenderer:
@@ -573,17 +573,17 @@ class PhysicsRenderer:
     ) -> _Array:
         """Draws ``rgb``, ``depth`` or ``segmentation`` of a state, as its arrays show it.
 
-        ``camera`` is one of the model's, or nothing for the free one behind it: the point that it looks at, distance, azimuth
-        and elevation. ``size`` is width and height. ``markers`` come behind the geoms of the model: shape, size, position,
-        orientation, colour.
+        ``camera`` is a camera of the model, or ``None`` to use the free camera after it: the point that it looks at, distance,
+        azimuth and elevation. ``size`` is width and height. The ids of ``markers`` follow those of the model's geoms; each has
+        shape, size, position, orientation and colour.
         """
 
 @final
 class VectorEnv:
     """Many environments at once, on threads, with arrays over them.
 
-    The arrays that resets, steps and :meth:`recv` return are read-only, stay the same and change with the next call; with
-    ``copy`` they are the caller's own.
+    Resets, steps and :meth:`recv` always return the same read-only arrays, which the next call overwrites; with ``copy`` they
+    return new arrays.
     """
 
     def __new__(
@@ -597,8 +597,8 @@ class VectorEnv:
     ) -> VectorEnv:
         """Makes an environment of each blueprint; ``autoreset`` is ``next_step``, ``same_step`` or ``disabled``.
 
-        With ``lazy``, observations and their spaces are without images: :meth:`eyes` has them. ``copies`` of all observations
-        that Python keeps count as memory.
+        With ``lazy``, observations and their spaces have no images: :meth:`eyes` returns them. ``copies`` is the number of copies
+        of all observations that Python keeps; they count as memory.
         """
     @staticmethod
     def check_memory(
@@ -616,7 +616,7 @@ class VectorEnv:
         mask: Sequence[bool] | npt.NDArray[np.bool_] | None = None,
         copy: bool = False,
     ) -> dict[str, _Array]:
-        """Starts an episode in all environments, or in those of the mask; with one seed, environment i gets it plus i."""
+        """Starts an episode in all environments, or in those of the mask; with one seed, environment i gets the seed plus i."""
     def step(self, actions: npt.ArrayLike, copy: bool = False) -> dict[str, _Array]:
         """Applies an action in each environment, (N, action size), and waits for all."""
     def run(self, actions: npt.ArrayLike) -> None:
@@ -626,7 +626,7 @@ class VectorEnv:
     def recv(
         self, n: int, copy: bool = False
     ) -> tuple[dict[str, _Array], _Floats, _Flags, _Flags, npt.NDArray[np.int64]]:
-        """Waits for ``n`` environments: observations, rewards, terminated, truncated, and which they are."""
+        """Waits for ``n`` environments; returns observations, rewards, terminated, truncated and their indices."""
     def eyes(self, copy: bool = False) -> dict[str, _Array]:
         """Returns the images of the last rows, and draws them if they are not drawn yet."""
     def close(self) -> None:
@@ -641,9 +641,8 @@ class VectorEnv:
         """Returns new arrays with a row for each of the last rows.
 
         ``steps`` (N); ``touches`` (N, 2, geoms), which geoms the right and the left palm have touched, 1 or 0;
-        ``regards`` (N, 4), how often hands were in view, and ``page_regards`` and ``kit_regards``, counted either way;
-        for tasks ``is_success`` and ``is_failure`` (N) and
-        ``reward_terms`` (N, terms).
+        ``regards`` (N, 4), how often hands were in view, with ``page_regards`` and ``kit_regards``, counted by either rule;
+        for tasks ``is_success`` and ``is_failure`` (N) and ``reward_terms`` (N, terms).
         """
     def failures(self) -> list[tuple[int, str]]:
         """Returns the environments that could not continue in the last step, with the reasons."""
@@ -671,7 +670,7 @@ class VectorEnv:
         """The reason why there are fewer threads than requested, if so."""
     @property
     def in_flight(self) -> int:
-        """Number of environments that were sent and have not been received."""
+        """Number of environments that were sent an action and have not been received."""
     @property
     def action_bounds(self) -> list[npt.NDArray[np.float32]]:
         """Lower and upper bounds of the actions of one environment."""
@@ -691,7 +690,7 @@ class VectorEnv:
     def model_array(self, env: int, name: str) -> _Array:
         """Returns an array of the model by MuJoCo's name, with all changes, or an option: ``opt.gravity``."""
     def change_model(self, env: int, changes: dict[str, _Array]) -> None:
-        """Changes numbers of the model from the next step on; the arrays are whole."""
+        """Changes numbers of the model from the next step on; takes whole arrays."""
     def set_age(self, env: int, age: float | None) -> dict[str, Any]:
         """Sets the age of one environment's MIMo, months; returns its configuration."""
     def model_changes(self, env: int) -> dict[str, _Array]:
@@ -734,13 +733,13 @@ class Parts:
     def clear_info(self) -> None:
         """Resets the counters of the behavior."""
     def touches(self, right: int, left: int) -> tuple[list[int], list[int]] | None:
-        """Returns the geoms that each palm has touched, beyond the first ``right`` and ``left`` ones."""
+        """Returns the geoms that each palm has touched, after the first ``right`` and ``left`` ones."""
     @property
     def regards(self) -> tuple[int, int, int, int] | None:
-        """Returns for how many steps each eye has had each hand before it."""
+        """Returns for how many steps each eye has had each hand in view."""
     @property
     def cost(self) -> float:
-        """Returns the cost of the present controls, 0 to 1."""
+        """Returns the cost of the current controls, 0 to 1."""
     @property
     def gear(self) -> _Floats:
         """Returns the gears of the actuators, (nu,); with muscles their torques, N m."""
@@ -749,7 +748,7 @@ class Parts:
         """Returns the force of each constraint row, N or N m."""
     @property
     def eq_active0(self) -> npt.NDArray[np.uint8]:
-        """Returns which equality constraints hold after a reset, (neq,)."""
+        """Returns which equality constraints are active after a reset, (neq,)."""
     @property
     def proprioception(self) -> _Floats:
         """Returns the proprioception of the last observation, (n,)."""
@@ -759,9 +758,9 @@ class Parts:
     def fill(self, arrays: Sequence[_Floats]) -> None:
         """Copies the state into arrays of the same lengths, in the order of ``FILLED``."""
     def fill_start(self, eq_active: npt.NDArray[np.uint8], position: Sequence[_Floats]) -> None:
-        """Writes which equality constraints hold now, and positions and velocities at the start of the last physics step."""
+        """Writes which equality constraints are active, and positions and velocities at the start of the last physics step."""
     def fill_position(self, position: Sequence[_Floats]) -> None:
-        """Writes the present positions and velocities."""
+        """Writes the current positions and velocities."""
     def differences(self, arrays: Sequence[_Floats]) -> int:
         """Returns which arrays differ from the state, as bits 0 to 7.
 
@@ -795,7 +794,7 @@ def paint(env: Env, looks: Mapping[str, npt.ArrayLike]) -> None:
     """Changes the look of an environment's model at any time: whole arrays by name, as :func:`model_columns` returns them."""
 
 def set_equalities(env: Env, active: Sequence[bool]) -> None:
-    """Sets which equality constraints hold, now and in later episodes."""
+    """Sets which equality constraints are active, now and in later episodes."""
 
 def spread_linear(
     sides: Sequence[tuple[int, int, _Array]],

@@ -1,4 +1,4 @@
-"""Changes of the model of an environment: whole arrays, or the rows of elements by their names."""
+"""Changes to the model of an environment: whole arrays, or the rows of elements by their names."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ _KINDS = {
     "actuator": "actuator",
     "eq": "equality",
 }
-"""Kinds of elements by what the names of their arrays begin with."""
+"""Kinds of elements by the prefix of their arrays' names."""
 
 _OF_DOFS = frozenset(
     {
@@ -48,9 +48,9 @@ def arrays(
     """Returns whole arrays; elements that a mapping does not name keep their rows.
 
     Raises:
-        TypeError: Something that is not a mapping of names.
+        TypeError: The changes are not a mapping of names.
         KeyError: The array or element does not exist.
-        ValueError: Numbers of another shape.
+        ValueError: Numbers have another shape.
     """
     if not isinstance(changes, Mapping):
         raise TypeError(f"the changes of the model are {changes!r}, expected a mapping from names of arrays to numbers")
@@ -76,7 +76,7 @@ def _whole(
 
 
 def rows_of(name: str, element: object, blueprint: _native.Blueprint) -> Any:
-    """Returns the row, or the rows, of an element in an array: its number, or a list of a joint's.
+    """Returns the row of an element in an array as a number, or the rows of a joint as a list.
 
     Raises:
         TypeError: The array does not have a row for each element.
@@ -96,7 +96,7 @@ def rows_of(name: str, element: object, blueprint: _native.Blueprint) -> Any:
 
 
 def element_of(name: str, kind: str, element: object, blueprint: _native.Blueprint) -> int:
-    """Returns the number of an element: a name as the document gives it, or of a geom that of its part.
+    """Returns the number of an element by its name in the document; a geom may be given by the name of its part.
 
     Raises:
         KeyError: There is no such element.
@@ -171,8 +171,8 @@ def options_of(options: object, known: Sequence[str] = OPTIONS) -> Mapping[str, 
     """Returns the options of a reset.
 
     Raises:
-        TypeError: Something that is not a mapping.
-        ValueError: An option that there is not.
+        TypeError: The options are not a mapping.
+        ValueError: There is no such option.
     """
     if options is None:
         return {}
@@ -191,8 +191,8 @@ def of_vector(name: str, wanted: Any, count: int, one: type) -> list[Any]:
     """Returns an option for each environment of a vector: one value of a type for all, or a list with one for each.
 
     Raises:
-        TypeError: Something else.
-        ValueError: A list of another length.
+        TypeError: The value is neither.
+        ValueError: The list has another length.
     """
     if wanted is None or isinstance(wanted, one):
         return [wanted] * count
@@ -207,11 +207,11 @@ def of_vector(name: str, wanted: Any, count: int, one: type) -> list[Any]:
 
 
 def whole(name: str, value: Any, least: int) -> int:
-    """Returns a whole number that is large enough; NumPy's numbers count.
+    """Returns a whole number of at least ``least``; NumPy's numbers are accepted.
 
     Raises:
-        TypeError: Something that is not a whole number.
-        ValueError: A smaller one.
+        TypeError: The value is not a whole number.
+        ValueError: The number is smaller.
     """
     try:
         number = operator.index(value)
@@ -223,11 +223,11 @@ def whole(name: str, value: Any, least: int) -> int:
 
 
 def seed_of(seed: Any) -> Union[int, None]:
-    """Returns a seed as a whole number; NumPy's numbers count.
+    """Returns a seed as a whole number; NumPy's numbers are accepted.
 
     Raises:
-        TypeError: Something that is not a whole number.
-        ValueError: A number below 0, or of more than 64 bits.
+        TypeError: The value is not a whole number.
+        ValueError: The number is below 0, or has more than 64 bits.
     """
     if seed is None:
         return None

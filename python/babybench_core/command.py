@@ -26,7 +26,7 @@ def _parser(program: str) -> argparse.ArgumentParser:
     )
     parser.add_argument("-m", dest="module", action="store_true", help="SCRIPT is the name of a module")
     parser.add_argument("script", metavar="SCRIPT", help="a Python file")
-    parser.add_argument("arguments", metavar="ARGUMENT", nargs=argparse.REMAINDER, help="what the script is given")
+    parser.add_argument("arguments", metavar="ARGUMENT", nargs=argparse.REMAINDER, help="arguments of the script")
     return parser
 
 
@@ -62,7 +62,7 @@ def main(arguments: Optional[Sequence[str]] = None) -> None:
     """Runs the command with the arguments of a command line.
 
     Raises:
-        SystemExit: It has failed.
+        SystemExit: The command failed.
     """
     given = list(sys.argv[1:] if arguments is None else arguments)
     program = _program()

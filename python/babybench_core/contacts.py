@@ -13,7 +13,7 @@ class Contact:
     """One contact, as MuJoCo's ``MjContact``."""
 
     def __init__(self, columns: dict[str, NDArray[Any]], index: int) -> None:
-        """Takes a row of the columns."""
+        """Reads one row of the columns."""
         for name, column in columns.items():
             value = column[index]
             setattr(self, name, value if value.ndim else value.item())
@@ -27,7 +27,7 @@ class ContactList:
     """The contacts of an instant: arrays with an entry for each, or one by one."""
 
     def __init__(self, columns: dict[str, NDArray[Any]]) -> None:
-        """Adds what MuJoCo derives."""
+        """Adds the columns that MuJoCo derives."""
         count = len(columns["geom1"])
         geoms = np.stack([columns["geom1"], columns["geom2"]], axis=1)
         nothing = np.full((count, 2), -1, dtype=np.int32)
@@ -61,7 +61,7 @@ class ContactList:
     def __getitem__(self, index: slice) -> ContactList: ...
 
     def __getitem__(self, index: int | slice) -> Contact | ContactList:
-        """Returns a contact, or the list of some."""
+        """Returns a contact, or the list of a slice."""
         count = len(self)
         if isinstance(index, slice):
             some = ContactList.__new__(ContactList)

@@ -1,7 +1,7 @@
 """Records of runs: folders with a description and a NumPy archive for each episode.
 
-``babybench run --record DIR`` and ``babybench evaluate --record DIR`` make them, and :class:`Recorder`. Two lines read
-one without this module::
+``babybench run --record DIR``, ``babybench evaluate --record DIR`` and :class:`Recorder` make them. Two lines read one
+without this module::
 
     import numpy
     episode = numpy.load("DIR/episode_0.npz")
@@ -11,7 +11,7 @@ With it::
     import babybench.data
     record = babybench.data.open("DIR")
     record[0]["qpos"]           # (T, nq)
-    record[0].touch(17)         # what the skin felt in step 17, all of it
+    record[0].touch(17)         # what the whole skin felt in step 17
     record[0].to_pandas()       # a row for each step, if pandas is installed
     record.to_parquet("record.parquet")     # to_hdf5, to_nwb, to_rerun, to_tensorboard, to_minari: each behind an extra
 """
@@ -34,10 +34,10 @@ from babybench_core.export.methods import Exports
 __all__ = ["Episode", "Record", "Recorder", "open"]
 
 _MODEL = "model."
-"""What the names of changed arrays of the model begin with."""
+"""Prefix of the names of changed arrays of the model."""
 
 _RECENT = 2
-"""How many episodes a record keeps with the arrays that were read of them."""
+"""Number of episodes that a record keeps, with the arrays that were read from them."""
 
 FORMAT = "babybench record"
 VERSION = 1
@@ -46,12 +46,12 @@ VERSION = 1
 class Episode(Mapping[str, np.ndarray]):
     """An episode of a record: arrays by name, read on first use.
 
-    Arrays of steps have a row for each; ``record.manifest["arrays"]`` says what each one is. Touch and contacts are
-    sparse: :meth:`touch` and :meth:`contacts` have those of a step.
+    Arrays of steps have a row for each step; ``record.manifest["arrays"]`` describes each array. Touch and contacts are
+    sparse: :meth:`touch` and :meth:`contacts` return those of a step.
     """
 
     def __init__(self, record: Record, path: Path, description: Mapping[str, Any]) -> None:
-        """Reads the names of the arrays; :func:`open` and ``record[number]`` do that."""
+        """Reads the names of the arrays. Programs get episodes from :func:`open` and ``record[number]``."""
         self.record = record
         self.path = path
         self.description = description
@@ -106,7 +106,7 @@ class Episode(Mapping[str, np.ndarray]):
 
     @property
     def _grown(self) -> dict[str, Any]:
-        """The age, as a key of the configuration, if it is not that of the record."""
+        """The age, as a key of the configuration, if it differs from the record's."""
         return {"age": self.description["age"]} if "age" in self.description else {}
 
     @property
@@ -255,7 +255,7 @@ class Record(Exports, Mapping[int, Episode]):
         """The names of the bodies of the scene, by id."""
         names = self.manifest.get("bodies")
         if names is None:
-            # a record of before manifests had them
+            # a record from before manifests had them
             names = self.environment(touch_active=False)._core.blueprint.model_names["body"]
         return list(names)
 
@@ -274,7 +274,7 @@ class Record(Exports, Mapping[int, Episode]):
 
         Yields:
             First the observation at the start with reward 0, then what each step returned, with the same bits; the arrays
-            are fresh. Of a record that is not repeated with the same bits (``record.replay(episode)``) they differ.
+            are fresh. They differ if the record does not replay with the same bits (``record.replay(episode)``).
         """
         recorded = self[episode]
         env = self.environment(**recorded._grown)
@@ -283,7 +283,7 @@ class Record(Exports, Mapping[int, Episode]):
         observation = core.resume(recorded["snapshot"].tobytes())
         yield observation, 0.0, False, False, core.info()
         for drawn, action in zip(recorded["drawn"], recorded["actions"]):
-            # what a policy drew is not drawn again
+            # the policy's own random draws are not repeated
             core.draw_from(int(drawn))
             yield (*core.step(action), core.info())
 
@@ -319,12 +319,12 @@ class Record(Exports, Mapping[int, Episode]):
 
         Args:
             episode: One episode; all by default.
-            fps: Frames a second of the camera that sees the movement, Hz.
+            fps: Frame rate of the camera that films the movement, Hz.
             band: The band in which exponents are fitted, Hz.
             window: Frames of a window of the spectrum, a power of two.
             jitter: Standard deviation of the camera's error in each coordinate, mm.
             seed: Seed of these errors.
-            frame: ``world``, or ``hip`` for movements without what the trunk does.
+            frame: ``world``, or ``hip`` for movements relative to the trunk.
 
         Returns:
             ``values`` by name, without those that are undefined; ``options``, ``episodes`` and ``seconds``; and ``leading``, the
@@ -368,12 +368,12 @@ class Recorder:
             env: A ``babybench.Env``, or a wrapper around one.
             folder: A folder without a record.
             senses: Whether every other sense is recorded as observed, too.
-            eyes_every: Every how many steps what both eyes observe is recorded.
-            policy: What acts, in words.
+            eyes_every: Number of steps from one recorded observation of both eyes to the next.
+            policy: Description of the policy.
 
         Raises:
             FileExistsError: The folder has a record.
-            TypeError: Something that is not a ``babybench.Env``.
+            TypeError: ``env`` is not a ``babybench.Env``.
         """
         from babybench_core import _native
         from babybench_core.env import Env
@@ -392,7 +392,7 @@ class Recorder:
     def reset(self, **options: Any) -> tuple[Any, dict[str, Any]]:
         """Ends the episode, resets the environment, and starts recording the next one.
 
-        What ``options`` and :meth:`babybench.Env.change_model` have changed of the model is recorded with it, and so is the age.
+        The record includes the age, and the changes to the model by ``options`` and :meth:`babybench.Env.change_model`.
 
         Raises:
             ValueError: The age changes the number of touch sensors: use ``touch_grows``.

@@ -33,25 +33,25 @@ class Env(SceneAccess, gymnasium.Env[Observation, npt.NDArray[Any]]):
 
     | entry           | type    | meaning                                                                              |
     |-----------------|---------|--------------------------------------------------------------------------------------|
-    | `observation`   | float64 | proprioception: rad, rad/s, N m (`env.proprioception` says what stands where)        |
+    | `observation`   | float64 | proprioception: rad, rad/s, N m (`env.proprioception` describes the layout)          |
     | `touch`         | float32 | forces on the skin, N (`env.touch`)                                                  |
     | `touch_pooled`  | float64 | for each body normal force, N, active sensors, and force, N, (bodies, 5)             |
-    | `pain`          | float32 | what hurts, a number for each touch sensor                                           |
+    | `pain`          | float32 | pain, a number for each touch sensor                                                 |
     | `eye_left`      | uint8   | what the left eye sees, (height, width, 3), red, green, blue, from the top           |
     | `eye_right`     | uint8   | what the right eye sees                                                              |
     | `vestibular`    | float64 | linear acceleration (m/s^2, 3) and angular velocity (rad/s, 3) of the head           |
     | `reflexes`      | float64 | how strongly each of ``env.reflexes`` acts, 0 to 1                                 |
-    | `achieved_goal` | float64 | of tasks with goals: what is achieved                                                |
-    | `desired_goal`  | float64 | what is to be achieved                                                               |
+    | `achieved_goal` | float64 | in tasks with goals: the achieved goal                                               |
+    | `desired_goal`  | float64 | in tasks with goals: the desired goal                                                |
 
     Arrays are fresh with every step, unless ``views`` is set. With ``vision_lazy`` images are left out: :meth:`eyes` draws them.
 
     The information has ``steps`` and, by behavior, ``right_hand_touches`` and ``left_hand_touches`` (ids of the geoms that
     the palm has touched in this episode) with their names in ``right_hand_parts`` and ``left_hand_parts``; or how many
-    steps each hand was in the view of each eye (``right_eye_left_hand``, ...), and ``gaze_angles`` (rad). That of a task has
-    its name (``task``), ``is_success``, ``is_failure``, the ``return`` of the episode so far and ``reward_terms``, what the
-    reward depends on beside goals: :meth:`compute_reward` takes them. With ``reflexes`` it has ``reflex_NAME``, the share of the
-    episode's physics steps in which that reflex acted.
+    steps each hand was in the view of each eye (``right_eye_left_hand``, ...), and ``gaze_angles`` (rad). With a task it has
+    its name (``task``), ``is_success``, ``is_failure``, the ``return`` of the episode so far and ``reward_terms``, the values
+    besides goals that the reward depends on, for :meth:`compute_reward`. With ``reflexes`` it has ``reflex_NAME``, the share of
+    the episode's physics steps in which that reflex acted.
 
     Example:
         >>> import babybench
@@ -85,12 +85,12 @@ class Env(SceneAccess, gymnasium.Env[Observation, npt.NDArray[Any]]):
             config: A mapping, the name of an example, the path of a YAML file, or nothing for the defaults.
             render_mode: ``None``, ``"rgb_array"``, ``"depth_array"`` (m) or ``"human"``: a window by pygame, in real time, in
                 which the pointer turns the camera and pulls bodies, and keys pause (space), take one step (right), change the
-                speed (up, down), show contacts (c) and touch (t). Closed, it leaves steps as fast as without it.
+                speed (up, down), show contacts (c) and touch (t). Once it is closed, steps are as fast as without it.
             camera: The camera of :meth:`render`; by default ``corner``, or the left eye in the scene of a task; a window begins
                 with one that looks at MIMo.
             assets: A folder with MJCF and textures laid out like the kit's, instead of those that come with the package.
             views: Observations are read-only arrays that stay the same and change with the next step or reset: nothing
-                is allocated. Copy what is to be kept.
+                is allocated. Copy what you keep.
             **keys: Keys of the configuration that replace those of ``config``; ``babybench.config_keys()`` lists them.
 
         Raises:
@@ -131,7 +131,7 @@ class Env(SceneAccess, gymnasium.Env[Observation, npt.NDArray[Any]]):
         """Starts an episode.
 
         Args:
-            seed: Reseeds every random choice; without, they go on. Under ``compat: reference`` it seeds nothing.
+            seed: Reseeds every random choice; without it, the generators continue. Under ``compat: reference`` it seeds nothing.
             options: What changes before the episode: ``age`` in months (:meth:`set_age`), then ``model``, numbers of the model
                 (:meth:`change_model`).
 
@@ -139,7 +139,7 @@ class Env(SceneAccess, gymnasium.Env[Observation, npt.NDArray[Any]]):
             The observation and the information.
 
         Raises:
-            ValueError: An option that there is not.
+            ValueError: There is no such option.
         """
         seed, wanted = changes.seed_of(seed), changes.options_of(options)
         super().reset(seed=seed)
@@ -159,7 +159,7 @@ class Env(SceneAccess, gymnasium.Env[Observation, npt.NDArray[Any]]):
             Observation, reward (0 without a task), terminated (False without a task), truncated, information.
 
         Raises:
-            ValueError: An action of another shape, or with numbers that are not finite; nothing has happened then.
+            ValueError: An action of another shape, or with numbers that are not finite; nothing changes then.
             RuntimeError: The simulation diverged, or there was no reset; reset it.
         """
         observation, reward, terminated, truncated = self._core.step(action)
@@ -168,11 +168,11 @@ class Env(SceneAccess, gymnasium.Env[Observation, npt.NDArray[Any]]):
 
     @property
     def compute_reward(self) -> ComputeReward:
-        """Computes the rewards of goals, as Gymnasium-Robotics does. For the goals of a step it is that step's reward.
+        """Computes the rewards of goals, as Gymnasium-Robotics does. For the goals of a step, it returns that step's reward.
 
         It is called as ``compute_reward(achieved_goal, desired_goal, info)``, with goals of the shape (goal,) and the
         information of the step, or with K goals, (K, goal), and the information of K steps; it returns the reward, or K of
-        them. Only environments with goals have it, as learners tell by it which these are.
+        them. Only environments with goals have it, because learners recognize them by it.
 
         Raises:
             AttributeError: The observation has no goals.
@@ -275,7 +275,7 @@ class Env(SceneAccess, gymnasium.Env[Observation, npt.NDArray[Any]]):
         return self._core.render(camera, width, height)
 
     def depth(self, camera: str = "eye_left", width: int = 64, height: int = 64) -> npt.NDArray[np.float32]:
-        """Draws how far away things are from a camera's plane, (height, width), m; infinite where nothing is."""
+        """Draws distances from a camera's plane, (height, width), m; infinite where there is nothing."""
         return self._core.depth(camera, width, height)
 
     def segmentation(self, camera: str = "eye_left", width: int = 64, height: int = 64) -> npt.NDArray[np.int32]:
@@ -306,7 +306,7 @@ class Env(SceneAccess, gymnasium.Env[Observation, npt.NDArray[Any]]):
     def set_age(self, age: Optional[float]) -> None:
         """Sets MIMo's age, 0 to 24 months, or restores his own proportions (``None``); the next call must be a reset.
 
-        Locks and the generator of random choices stay; changes of the model go. Names and ids are the same at every age. So is
+        Locks and the random generator are kept; changes to the model are lost. Names and ids are the same at every age. So is
         ``observation_space``, except for the length of touch without ``touch_grows``.
 
         Example:
@@ -319,7 +319,7 @@ class Env(SceneAccess, gymnasium.Env[Observation, npt.NDArray[Any]]):
             6.0
 
         Raises:
-            ValueError: An age that is not allowed; nothing has happened then.
+            ValueError: An age that is not allowed; nothing changes then.
         """
         self.config = self._core.set_age(None if age is None else float(age))
         self._forget_layouts()
@@ -348,7 +348,7 @@ class Env(SceneAccess, gymnasium.Env[Observation, npt.NDArray[Any]]):
         Touch and images are those of that moment from the next step on.
 
         Raises:
-            ValueError: A snapshot of another environment, or a damaged one; nothing has changed then.
+            ValueError: A snapshot of another environment, or a damaged one; nothing changes then.
         """
         self._core.restore(snapshot)
         self._follow_age()
@@ -359,13 +359,13 @@ class Env(SceneAccess, gymnasium.Env[Observation, npt.NDArray[Any]]):
         Nothing but pictures changes; the next step has the same bits as without.
 
         Raises:
-            ValueError: The face does not exist; nothing has changed then.
+            ValueError: The face does not exist; nothing changes then.
         """
         old, core, snapshot = self.config, self._core, self._core.snapshot()
         self.config = _native.config_from_mapping({**old, "facial_expression": expression})
         try:
             self._build()
-            # before the first reset there is nothing to be seen
+            # before the first reset there is nothing to see
             if core.ready:
                 self._core.resume(snapshot)
             else:
@@ -384,7 +384,7 @@ class Env(SceneAccess, gymnasium.Env[Observation, npt.NDArray[Any]]):
     ) -> None:
         """Moves a body with ``mocap="true"`` to a position (world, m) and an orientation (w, x, y, z), from the next step on.
 
-        It stays there until it is put elsewhere, and a reset puts it back where the document has it. Bodies of the key
+        It stays there until it is moved again; a reset returns it to its pose in the document. Bodies of the key
         ``mocap_motion`` follow their paths instead.
 
         >>> hand = "<body name='hand' mocap='true' pos='.3 0 .3'><geom size='.03'/></body>"
@@ -410,9 +410,9 @@ class Env(SceneAccess, gymnasium.Env[Observation, npt.NDArray[Any]]):
 
         Args:
             body: The name or the id of a body.
-            force: N, in the world; zeros take it off.
+            force: N, in the world; zeros remove it.
             torque: N m, in the world.
-            point: Where the force acts, m, in the world, with the body where it is now; by default at its centre of mass.
+            point: Where the force acts, m, in the world, at the body's current pose; by default its centre of mass.
 
         Example:
             >>> import babybench
@@ -434,7 +434,7 @@ class Env(SceneAccess, gymnasium.Env[Observation, npt.NDArray[Any]]):
     def lock(self, target: Union[str, int], angle: float = 0.0) -> LockReport:
         """Locks a joint (``"robot:right_elbow"``), or all joints of a part (``"head"``), at an angle in rad.
 
-        Locks outlast resets. An angle that a joint's range does not contain is taken with a warning: the lock and the limit pull
+        Locks outlast resets. An angle outside a joint's range is accepted with a warning: the lock and the limit pull
         against each other.
 
         Raises:
@@ -449,7 +449,7 @@ class Env(SceneAccess, gymnasium.Env[Observation, npt.NDArray[Any]]):
             return self._core.unlock(target)
 
     def __getattr__(self, name: str) -> Any:
-        """Suggests replacements of attributes that the starter kit's environments have.
+        """Suggests replacements for attributes that the starter kit's environments have.
 
         Raises:
             AttributeError: Always.

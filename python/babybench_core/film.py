@@ -62,7 +62,7 @@ class Film:
             fps: Pictures for each second of simulated time, at most 50. It plays in real time.
 
         Raises:
-            TypeError: This is not an environment of this package.
+            TypeError: ``env`` is not an environment of this package.
             ValueError: ``fps`` is not in its range.
         """
         inside = env.unwrapped
@@ -90,7 +90,7 @@ class Film:
         """Writes the film: ``.webp``, ``.gif``, or ``.png`` (animated).
 
         Raises:
-            ValueError: The film is empty, or the format is another one.
+            ValueError: The film is empty, or the format is unknown.
             ModuleNotFoundError: Pillow is not installed.
         """
         kind = FORMATS.get(Path(path).suffix.lower())
@@ -139,8 +139,8 @@ def film(
 
     Args:
         env: An environment, which is reset; or the arguments of :func:`babybench.make`.
-        policy: What moves MIMo: a function of the observation, a noise (``"held"``, ``"pink"``, ...), or nothing.
-        seconds: Simulated time. A new episode begins where one ends before.
+        policy: The policy that moves MIMo: a function of the observation, a noise (``"held"``, ``"pink"``, ...), or nothing.
+        seconds: Simulated time. If an episode ends earlier, another begins.
         seed: The seed of the first episode.
         camera: See :class:`Film`.
         width: See :class:`Film`.
@@ -148,7 +148,7 @@ def film(
         fps: See :class:`Film`.
 
     Raises:
-        TypeError: This is not an environment of this package.
+        TypeError: ``env`` is not an environment of this package.
         ValueError: ``fps`` is not in its range.
     """
     acting: gymnasium.Env[Any, Any] = make(env) if isinstance(env, (str, Mapping)) else env

@@ -54,7 +54,7 @@ PROPRIOCEPTION: Mapping[str, str] = {
 
 
 def refuse(owner: Any, name: str, hints: Mapping[str, str]) -> NoReturn:
-    """Suggests a replacement of an attribute.
+    """Suggests a replacement for an attribute.
 
     Raises:
         AttributeError: Always.

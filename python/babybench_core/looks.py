@@ -1,4 +1,4 @@
-"""The look of a model: values that pictures follow and no step reads."""
+"""The appearance of a model: values that affect pictures but not steps."""
 
 from __future__ import annotations
 
@@ -20,11 +20,11 @@ LOOKS = frozenset(
         *("light_pos", "light_dir", "light_active"),
     }
 )
-"""The arrays that pictures follow."""
+"""The arrays that affect pictures."""
 
 
 def is_look(name: str) -> bool:
-    """Returns whether pictures follow an array, or a setting of ``model.vis``."""
+    """Returns whether an array, or a setting of ``model.vis``, affects pictures."""
     return name in LOOKS or name.startswith("vis_")
 
 

@@ -29,9 +29,9 @@ class Played:
     steps: int
     """Number of steps."""
     error: float
-    """How far the joints were from the motion, rad: root of the mean square; 0 when played kinematically."""
+    """Deviation of the joints from the motion, rad, root mean square; 0 when played kinematically."""
     worst: Optional[tuple[str, float]]
-    """The joint that was farthest, and how far, rad."""
+    """The joint with the largest deviation, and that deviation, rad."""
     beyond_limits: list[str]
     """Joints whose range the motion leaves."""
 
@@ -55,17 +55,17 @@ def play_motion(
             Hz, and where the root is known ``root_pos`` (frames, 3), m, and ``root_quat`` (frames, 4), w first.
         folder: A folder without a record.
         config: The configuration; see :func:`babybench.make`.
-        track: Whether motors follow the angles, with everything else by the physics, instead of MIMo being put into each pose.
+        track: Whether motors track the angles and physics does the rest. By default MIMo is put into each pose.
         degrees: Whether the angles are in degrees.
         senses: Whether every other sense is recorded as observed, too.
-        eyes_every: Every how many steps what both eyes observe is recorded.
-        seed: Of the reset.
+        eyes_every: Number of steps from one recorded observation of both eyes to the next.
+        seed: The seed of the reset.
         **keys: Keys of the configuration that replace those of ``config``.
 
     Raises:
         FileNotFoundError: The file does not exist.
         FileExistsError: The folder has a record.
-        ValueError: A damaged file, numbers that are not finite, joints that MIMo does not have, muscles that are to track.
+        ValueError: A damaged file, numbers that are not finite, joints that MIMo does not have, or ``track`` with muscles.
     """
     from babybench_core import data
     from babybench_core.env import Env
@@ -84,7 +84,7 @@ def _write(motion: Mapping[str, Any], path: Path) -> str:
     """Writes a mapping as a file.
 
     Raises:
-        ValueError: Something is missing, or there is what no motion has.
+        ValueError: A key is missing or unknown.
     """
     known, needed = ("names", "angles", "rate", "root_pos", "root_quat"), ("names", "angles", "rate")
     for name in motion:

@@ -32,7 +32,7 @@ KINDS = {
 """The methods that find elements, and the kind of each."""
 
 PREFIX = {"joint": "jnt", "camera": "cam", "equality": "eq", "texture": "tex", "material": "mat"}
-"""Prefix of the names of a kind's arrays, where it is not the kind."""
+"""Prefix of the names of a kind's arrays, where it differs from the kind."""
 
 
 def widened(values: NDArray[Any], width: int) -> NDArray[Any]:
@@ -73,7 +73,8 @@ class Element:
 class Named(ABC):
     """Look-up of elements by number and by name, shared by models and states.
 
-    What shows an environment under MuJoCo's names registers with the class that it stands for, so that ``isinstance`` holds.
+    Classes that show an environment under MuJoCo's names register with the class that they stand for, so that ``isinstance``
+    holds.
     """
 
     _names: dict[str, list[str]]
@@ -107,5 +108,5 @@ def accessor(kind: str) -> Callable[..., Element]:
         number, name = self._find(kind, key)
         return Element(self, kind, number, name)
 
-    access.__doc__ = f"Returns the {kind} of an id or of a name."
+    access.__doc__ = f"Returns the {kind} with an id or a name."
     return access

@@ -15,10 +15,10 @@ __all__ = ["ActionNoise"]
 
 
 class ActionNoise:
-    """A noise over the actions of an environment, or of each environment of a vector.
+    """Action noise for an environment, or for each environment of a vector.
 
-    The same seed gives the same actions here, in Rust and in JavaScript. All noises but ``white`` last: they move MIMo,
-    where a new action every 5 ms does not.
+    The same seed gives the same actions here, in Rust and in JavaScript. All noises except ``white`` change slowly enough to
+    move MIMo; a new action every 5 ms does not move him.
 
     Example:
         >>> import babybench
@@ -37,10 +37,10 @@ class ActionNoise:
                 frequency, 0 to 2), ``color_by_age`` (the exponent of infants of MIMo's age; ``color_by_age:3`` of 3
                 months), or ``oscillators`` (coupled, of 1 Hz on average; ``oscillators:2`` of 2 Hz).
             env: The environment, or the vector.
-            seed: Of a vector, environment i gets the seed plus i.
+            seed: The seed. Environment i of a vector gets the seed plus i.
 
         Raises:
-            ValueError: Not a noise, or ``color_by_age`` of a MIMo without an age; the text says what is.
+            ValueError: There is no such noise, or MIMo has no age for ``color_by_age``; the text lists the noises.
         """
         age = env.config.get("age")
         if noise == "color_by_age" and age is not None:

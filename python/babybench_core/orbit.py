@@ -26,7 +26,7 @@ class Orbit:
 
     @property
     def camera(self) -> tuple[list[float], float, float, float]:
-        """The camera as pictures take it."""
+        """The camera in the form that pictures take."""
         return self.lookat.tolist(), self.distance, self.azimuth, self.elevation
 
     def turn(self, across: float, down: float) -> None:
@@ -35,7 +35,7 @@ class Orbit:
         self.elevation = min(max(self.elevation - down, -89.9), 10.0)
 
     def shift(self, across: float, down: float) -> None:
-        """Moves the point in the plane of the picture, by parts of its height."""
+        """Moves the point in the plane of the picture, by fractions of its height."""
         _, right, up = self.axes()
         self.lookat += (up * down - right * across) * self._height(self.distance)
 

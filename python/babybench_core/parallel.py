@@ -38,8 +38,8 @@ Observation = Any
 class ParallelEnv(pettingzoo.ParallelEnv[str, Observation, npt.NDArray[np.float32]]):
     """Two infants in one room, who act at the same time.
 
-    ``learner`` senses and earns what :class:`babybench.Env` says. ``other`` is the second infant of a scene that includes
-    ``other_mimo.xml``: his action is a number for each motor, in [-1, 1], or an angle for each servo, rad
+    ``learner`` has the observations and rewards of :class:`babybench.Env`. ``other`` is the second infant of a scene that
+    includes ``other_mimo.xml``: his action is a number for each motor, in [-1, 1], or an angle for each servo, rad
     (``actuation_model: positional``); his observation, float64, has the angles (rad) and velocities (rad/s) of his joints,
     acceleration (m/s^2, 3) and angular velocity (rad/s, 3) of his head, and the torque (N m, 3) on each part; he has neither
     skin nor eyes, and his reward is 0. An episode ends for both at once.
@@ -96,7 +96,7 @@ class ParallelEnv(pettingzoo.ParallelEnv[str, Observation, npt.NDArray[np.float3
         """Starts an episode of both; see :meth:`babybench.Env.reset`.
 
         Warns:
-            UserWarning: An option that there is not. PettingZoo's own test of environments gives one.
+            UserWarning: There is no such option. PettingZoo's own test of environments gives one.
         """
         known = {name: value for name, value in (options or {}).items() if name in changes.OPTIONS}
         if len(known) < len(options or {}):
@@ -114,7 +114,7 @@ class ParallelEnv(pettingzoo.ParallelEnv[str, Observation, npt.NDArray[np.float3
         """Applies an action of each infant. Only the learner needs one; the other infant otherwise keeps his last.
 
         Raises:
-            KeyError: There is no action of the learner, or one of an agent that there is not.
+            KeyError: There is no action of the learner, or there is one of an unknown agent.
             ValueError: Actions of another shape, or with numbers that are not finite. Nothing has moved then; a valid action of
                 the other is kept for the next step.
             RuntimeError: The episode is over, the simulation diverged, or there was no reset; reset it.

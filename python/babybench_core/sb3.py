@@ -32,7 +32,7 @@ _PAIRS = ("right_eye_right_hand", "right_eye_left_hand", "left_eye_right_hand", 
 
 
 def _ended(key: str, last: dict[str, Any], running: Any) -> Any:
-    """Returns the value that a vector reports under a key for a finished episode; `running` is that of the next one."""
+    """Returns the value that a vector reports under a key for a finished episode; `running` is the next episode's value."""
     if key == "touches":
         touches = np.zeros_like(running)
         for hand, geoms in enumerate((last["right_hand_touches"], last["left_hand_touches"])):
@@ -48,8 +48,8 @@ class VecEnv(BaseVecEnv):
     """A vector of environments behind Stable-Baselines3's interface, on all cores and in one process.
 
     Ends of episodes are in ``infos[i]["terminal_observation"]``. Wrappers such as ``VecMonitor`` and ``VecNormalize`` go
-    around it; wrappers of single environments do not go in, so intrinsic rewards are those of a vector: see
-    ``examples/ppo_selftouch.py``. Observations are fresh arrays, as learners store those before a step when the step is done.
+    around it; wrappers of single environments do not go inside, so intrinsic rewards are computed for the vector: see
+    ``examples/ppo_selftouch.py``. Observations are fresh arrays, because learners store those before a step after the step.
     """
 
     def __init__(self, config: Any = "self_touch", num_envs: Optional[int] = None, **arguments: Any) -> None:
@@ -71,7 +71,7 @@ class VecEnv(BaseVecEnv):
         """Starts an episode in all environments, with the seeds of :meth:`seed` and the options of :meth:`set_options`.
 
         Raises:
-            ValueError: An option that there is not.
+            ValueError: There is no such option.
         """
         seeds = list(self._seeds)
         each = [changes.options_of(options) for options in self._options]
@@ -153,7 +153,7 @@ def sparse(features_dim: int = 64) -> dict[str, Any]:
     The networks are those of Stable-Baselines3 without these arguments, two layers of 64 with tanh for actions and two for
     values. Their outputs and gradients are the same up to rounding, because the omitted numbers are 0. Normalised
     observations (``VecNormalize``) are not 0 where nothing is felt, and gain nothing. Do not give ``policy_kwargs``
-    beside it: change those that it returns.
+    besides: change those that it returns.
 
     Example:
         .. code-block:: python

@@ -1,8 +1,8 @@
 """Networks of Stable-Baselines3 that read only the numbers that are not 0.
 
-A skin has thousands of sensors, of which a body in motion feels a few at a time: in a rollout of MIMo about one number in
-eight is ever other than 0. What is always 0 changes neither the output of a first layer nor its gradient, so that leaving it
-out gives the same network in a third of the time. :func:`babybench.sb3.sparse` puts the two classes together.
+A skin has thousands of sensors, but few feel anything at a time: in a rollout of MIMo about one number in eight is ever
+nonzero. Numbers that are always 0 change neither the output of a first layer nor its gradient, so leaving them out gives the
+same network in a third of the time. :func:`babybench.sb3.sparse` combines the two classes.
 """
 
 from __future__ import annotations
@@ -18,13 +18,13 @@ from stable_baselines3.common.preprocessing import is_image_space
 from stable_baselines3.common.torch_layers import BaseFeaturesExtractor, NatureCNN
 
 MANY = 1024
-"""Numbers from which on it pays to look for those that are 0."""
+"""Size of a sense from which on it pays to look for zeros."""
 
 
 class SparseRolloutBuffer(DictRolloutBuffer):
     """A rollout whose batches contain, for each sense with many numbers, only those that are not always 0.
 
-    The tensors of a batch say in their attribute ``columns`` which these are, as :class:`SparseExtractor` needs to know.
+    The attribute ``columns`` of a batch's tensors lists them for :class:`SparseExtractor`.
     """
 
     def reset(self) -> None:

@@ -53,8 +53,8 @@ class SceneAccess:
 
         Args:
             name: The array.
-            element: The name of a body, joint, geom, site or actuator, for its row alone; of a joint with several degrees of
-                freedom all of its rows.
+            element: The name of a body, joint, geom, site or actuator, for its row alone; for a joint with several degrees of
+                freedom, all of its rows.
 
         Raises:
             KeyError: There is no such array or element.
@@ -68,7 +68,7 @@ class SceneAccess:
         Args:
             model: Arrays by MuJoCo's names, as :meth:`array` returns them, or mappings from names of elements to rows.
 
-        What can change are ``opt.gravity``, ``opt.timestep``, ``opt.impratio``, ``opt.density``, ``opt.viscosity``, ``opt.wind``;
+        These can change: ``opt.gravity``, ``opt.timestep``, ``opt.impratio``, ``opt.density``, ``opt.viscosity``, ``opt.wind``;
         ``body_mass``, ``body_inertia``, ``geom_size``, ``geom_friction``, ``dof_damping``, ``dof_armature``,
         ``dof_frictionloss``, ``jnt_stiffness``, ``actuator_gear``; ``solref``, ``solimp``, ``margin``, ``gap`` and
         ``friction`` of geoms and pairs, and ``solref`` and ``solimp`` of joints, dofs and equalities; ``jnt_range``; ``pos`` and
@@ -85,14 +85,14 @@ class SceneAccess:
             >>> observation, info = env.reset(seed=0, options={"model": {"body_mass": mass * 1.1}})
 
         Raises:
-            KeyError: There is nothing of that name, or it cannot change.
-            ValueError: Numbers of another shape, that are not finite or too small; nothing has changed then.
+            KeyError: There is no such array or element, or it cannot change.
+            ValueError: Numbers of another shape, that are not finite or too small; nothing changes then.
         """
         core = self._core
         core.change_model(changes.arrays(model, core.model_array, core.blueprint))
 
     def paint(self, model: changes.Changes) -> None:
-        """Changes what pictures follow at any time; steps are as before.
+        """Changes the appearance at any time; steps are unaffected.
 
         Args:
             model: Arrays by MuJoCo's names, or mappings from names of elements to rows: ``geom_rgba``, ``geom_group``,
@@ -106,8 +106,8 @@ class SceneAccess:
             >>> env.paint({"geom_rgba": {"head": [1, 0, 0, 1]}, "cam_fovy": {"eye_left": 90}})
 
         Raises:
-            KeyError: There is nothing of that name.
-            ValueError: Numbers of another shape, or that no model has; nothing has changed then.
+            KeyError: There is no such array or element.
+            ValueError: Numbers of another shape, or that no model has; nothing changes then.
         """
         present = looks.of(self._core)
 

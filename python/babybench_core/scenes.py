@@ -18,8 +18,8 @@ ConfigLike = Union[Mapping[str, object], str, "os.PathLike[str]", None]
 class UnexpectedKeyword(TypeError, ValueError):
     """A keyword that is not a key of the configuration.
 
-    It is a ``ValueError``, as the same key in a file is, and a ``TypeError``, by which libraries that offer an environment
-    more than it takes know that they should do without.
+    It is a ``ValueError``, like the same key in a file, and a ``TypeError``, which tells libraries that offer an environment
+    optional arguments to leave them out.
     """
 
 
@@ -32,8 +32,8 @@ def read_config(config: ConfigLike = None, **keys: object) -> dict[str, Any]:
     Args:
         config: A mapping, the name of an example (``self_touch``, ``hand_regard``, ``test_installation``, or a task: ``reach``,
             ``standup``, ``selfbody``, ``catch``, ``roll_over``, ``mobile``, ``play``), the path of a YAML file, or nothing for
-            the defaults. The path of a scene starts at the folder of that file.
-        **keys: Keys that replace those of ``config``; a path starts at the working directory.
+            the defaults. The path of a scene is relative to the folder of that file.
+        **keys: Keys that replace those of ``config``; a path is relative to the working directory.
 
     Raises:
         FileNotFoundError: The file does not exist.
@@ -81,7 +81,7 @@ def blueprint(config: Mapping[str, object], assets: Optional[Union[str, os.PathL
     A custom scene is compiled each time, because its files may have changed.
 
     Args:
-        config: A configuration; keys left out have their default.
+        config: A configuration; missing keys get their default.
         assets: A folder with MJCF and textures laid out like the kit's, instead of those that come with the package.
     """
     full = config_from_mapping(config)

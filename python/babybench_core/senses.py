@@ -17,7 +17,7 @@ UNITS = {"angles": "rad", "velocities": "rad/s", "torques": "N m", "limits": "",
 
 
 class Proprioception:
-    """The entry ``observation``: the sense of the own body.
+    """The entry ``observation``: the sense of his own body.
 
     Example:
         >>> import babybench
@@ -79,7 +79,7 @@ class Proprioception:
         raise KeyError(f"proprioception has no {name!r} in {component!r}{hints.nearest(name, names[component])}")
 
     def __getattr__(self, name: str) -> Any:
-        """Suggests replacements of attributes that the starter kit's sense has.
+        """Suggests replacements for attributes that the starter kit's sense has.
 
         Raises:
             AttributeError: Always.
@@ -182,7 +182,7 @@ class Touch(TouchLayout):
         return world
 
     def __getattr__(self, name: str) -> Any:
-        """Suggests replacements of attributes that the starter kit's sense has.
+        """Suggests replacements for attributes that the starter kit's sense has.
 
         Raises:
             AttributeError: Always.

@@ -15,7 +15,7 @@ from babybench_core import _native
 def observation_space(core: _native.Env | _native.VectorEnv) -> Any:
     """Returns the space of the observations of one environment, a ``Dict`` (whose type differs from release to release).
 
-    What has no bounds is unbounded, so that wrappers which scale or clip bounded observations leave it alone or refuse it.
+    Entries without bounds are unbounded, so that wrappers that scale or clip bounded observations skip or refuse them.
     """
     boxes: dict[str, spaces.Space[Any]] = {}
     for key, shape, dtype, low, high in core.observation_spaces:
@@ -35,7 +35,7 @@ def batch(single: Any, count: int) -> Any:
 def _box(low: Any, high: Any, shape: tuple[int, ...], dtype: Any) -> spaces.Box:
     """Returns a ``Box`` whose bounds are the same everywhere.
 
-    A ``Box`` keeps four arrays of its shape: for pictures more than the environments themselves. Here each is one number.
+    A ``Box`` keeps four arrays of its shape, which for pictures are larger than the environments. Here each is one number.
     """
     kind = np.dtype(dtype).type
     box = spaces.Box(kind(low), kind(high), (1,) * len(shape), kind)

@@ -12,7 +12,7 @@ from babybench_core import _native
 Floats = npt.NDArray[np.float64]
 
 STRENGTH = 12.0
-"""How fast the pulled body would swing, rad/s: stiffness is its square times the mass that the point feels."""
+"""Angular frequency of the pulled body, rad/s: the stiffness is its square times the effective mass at the point."""
 
 MOST = 40.0
 """The greatest force, in weights of the mass at the point, so that a distant pointer cannot throw the infant out of the room."""
@@ -22,13 +22,13 @@ class Spring:
     """Pulls at a body of an environment."""
 
     def __init__(self, core: _native.Env) -> None:
-        """Holds nothing yet."""
+        """Creates a spring that holds no body."""
         self._core = core
         self._body: Optional[int] = None
         self._point: Floats = np.zeros(3)
         self._before: Optional[Floats] = None
         self.target: Floats = np.zeros(3)
-        """Where it pulls to, m, in the world."""
+        """The target of the pull, m, in the world."""
 
     @property
     def holds(self) -> bool:

@@ -13,7 +13,7 @@ def needed(by: str) -> Iterator[None]:
     """Adds advice on installing ``babybench-kit`` to import errors raised inside.
 
     Args:
-        by: What needs it, for the message.
+        by: The name of the caller, for the message.
 
     Raises:
         ModuleNotFoundError: It is not installed.

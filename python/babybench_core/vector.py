@@ -59,7 +59,7 @@ _SINGLE = {
     "spec": "spec",
     "touch": "touch",
 }
-"""Attributes that environments of a vector have in common, and what they are of the vector."""
+"""Attributes that a vector's environments share, and the names of the vector's attributes for them."""
 
 
 class VectorEnv(gymnasium.vector.VectorEnv):  # type: ignore[type-arg, unused-ignore]
@@ -119,7 +119,7 @@ class VectorEnv(gymnasium.vector.VectorEnv):  # type: ignore[type-arg, unused-ig
             **keys: Keys that replace those of every configuration.
 
         Raises:
-            ValueError: What is not allowed; spaces that differ.
+            ValueError: A value is not allowed, or spaces differ.
             MemoryError: More environments than fit; the text says how many would.
         """
         configs = [config] if config is None or isinstance(config, (str, os.PathLike, Mapping)) else list(config)
@@ -140,8 +140,8 @@ class VectorEnv(gymnasium.vector.VectorEnv):  # type: ignore[type-arg, unused-ig
         self._assets = None if assets is None else os.fspath(assets)
         self._limits = (threads, max_memory)
         self._copy = copy
-        # of the last step and of this one: copies of observations, and the last observations of episodes that have ended;
-        # the arrays that threads write into are in the place of the vector's own
+        # two copies of observations, of the last step and of this one, and two of the last observations of ended episodes;
+        # the arrays that threads write into replace the vector's own
         self._kept = 2 * copy + 2 * (mode is AutoresetMode.SAME_STEP)
         self.autoreset_mode = mode
         shared = scenes.blueprint(full[0], self._assets)  # kept until the environments share it
@@ -196,7 +196,7 @@ class VectorEnv(gymnasium.vector.VectorEnv):  # type: ignore[type-arg, unused-ig
             Observations and information.
 
         Raises:
-            ValueError: An option that there is not.
+            ValueError: There is no such option.
         """
         options = changes.options_of(options, (*changes.OPTIONS, "reset_mask"))
         mask = options.get("reset_mask")
@@ -227,7 +227,7 @@ class VectorEnv(gymnasium.vector.VectorEnv):  # type: ignore[type-arg, unused-ig
             ``SAME_STEP``, the ends of episodes are in ``final_obs`` and ``final_info``.
 
         Raises:
-            ValueError: Actions of another shape, or with numbers that are not finite; nothing has happened then.
+            ValueError: Actions of another shape, or with numbers that are not finite; nothing changes then.
             RuntimeError: Environments that need a reset, or are in flight.
         """
         self._order = None
@@ -292,7 +292,7 @@ class VectorEnv(gymnasium.vector.VectorEnv):  # type: ignore[type-arg, unused-ig
         Raises:
             ValueError: Actions of another shape, or with numbers that are not finite; nothing is sent then.
             IndexError: The environment does not exist.
-            RuntimeError: An environment that is under way already, or needs a reset.
+            RuntimeError: An environment is already under way, or needs a reset.
         """
         self._core.send(actions, np.arange(self.num_envs) if ids is None else ids)
 
@@ -368,7 +368,7 @@ class VectorEnv(gymnasium.vector.VectorEnv):  # type: ignore[type-arg, unused-ig
         raise AttributeError(f"environments of a vector have no {name!r}; they have {known}")
 
     def set_attr(self, name: str, values: Any) -> None:
-        """Refuses: environments of a vector have no attributes to be changed.
+        """Refuses: environments of a vector have no attributes that can change.
 
         Raises:
             AttributeError: Always.
@@ -393,7 +393,7 @@ class VectorEnv(gymnasium.vector.VectorEnv):  # type: ignore[type-arg, unused-ig
         return compute_reward(reward, achieved_goal, desired_goal, info, self._core.reward_terms)
 
     def snapshot(self, env: int) -> bytes:
-        """Returns the present moment of one environment; it fits :meth:`restore`, and that of an :class:`Env` alone."""
+        """Takes a snapshot of one environment, for :meth:`restore` and for that of a single :class:`Env`."""
         return self._core.snapshot(env)
 
     def restore(self, env: int, snapshot: bytes) -> None:
@@ -426,7 +426,7 @@ class VectorEnv(gymnasium.vector.VectorEnv):  # type: ignore[type-arg, unused-ig
 
         Raises:
             ValueError: An age that is not allowed, or at which the observation has another shape, as without ``touch_grows``;
-                nothing has happened then.
+                nothing changes then.
         """
         config = self._core.set_age(env, None if age is None else float(age))
         self.configs = (*self.configs[:env], config, *self.configs[env + 1 :])

@@ -27,7 +27,7 @@ def chooser(env: Env, policy: Policy) -> Callable[[Mapping[str, Any]], npt.Array
     """Returns a policy as a function of the observation.
 
     Raises:
-        TypeError: This is no policy.
+        TypeError: ``policy`` is not a policy.
     """
     if isinstance(policy, str):
         policy = ActionNoise(policy, env)
@@ -59,7 +59,7 @@ class View:
         True
 
     Attributes:
-        url: The address of the page, on this machine alone, with a secret word. From another machine, forward
+        url: The address of the page, on this machine alone, with a secret token. From another machine, forward
             its port: ``ssh -L PORT:127.0.0.1:PORT``.
     """
 
@@ -75,7 +75,7 @@ class View:
             height: Pixels of the frame in a notebook.
 
         Raises:
-            TypeError: This is not an environment of this package.
+            TypeError: ``env`` is not an environment of this package.
             OSError: The port is taken.
         """
         inside = env.unwrapped
@@ -99,7 +99,7 @@ class View:
     def show(self) -> bool:
         """Shows the environment after the program's step, and returns when it is time for the next.
 
-        While no page is open it returns immediately: a closed or hidden page does not hold the program, even if it is paused.
+        While no page is open it returns immediately: a closed or hidden page does not hold up the program, even if it is paused.
 
         Returns:
             Whether a new episode was requested (the button "Start again").
@@ -120,7 +120,7 @@ class View:
         """Keeps the environment alive, one episode after another, until it is interrupted (Ctrl-C, or a notebook's stop button).
 
         Args:
-            policy: What moves MIMo: a function of the observation, a noise (``"held"``, ``"pink"``, ...), or nothing.
+            policy: The policy that moves MIMo: a function of the observation, a noise (``"held"``, ``"pink"``, ...), or nothing.
             episodes: The number of episodes; unlimited by default.
         """
         try:
@@ -145,7 +145,7 @@ class View:
         """Returns control of the environment to the program; the page pauses.
 
         Raises:
-            Exception: What the policy or the environment has raised meanwhile.
+            Exception: An exception that the policy or the environment raised meanwhile.
         """
         thread, self._thread = self._thread, None
         self._stop.set()
@@ -235,7 +235,7 @@ def view(
         height: See :class:`View`.
 
     Raises:
-        TypeError: This is not an environment of this package.
+        TypeError: ``env`` is not an environment of this package.
         OSError: The port is taken.
     """
     made = isinstance(env, (str, Mapping))

@@ -1,4 +1,4 @@
-"""A window for people, by pygame: an environment in real time, with a camera that turns and a spring that pulls."""
+"""A window, by pygame: an environment in real time, with a camera that turns and a spring that pulls."""
 
 from __future__ import annotations
 
@@ -90,7 +90,7 @@ class Window:
         if not self.open:
             return
         now = time.perf_counter()
-        # what is late is not caught up with: the window would race
+        # lost time is not made up: the window would race
         self._due = max(self._due + seconds / self.speed, now - 0.1)
         if now - self._drawn >= 1 / _FPS:
             self._draw()
@@ -106,7 +106,7 @@ class Window:
             self.spring.let_go()
             self._pg.display.quit()
 
-    # --- what people do ---
+    # --- input ---
 
     def _listen(self) -> None:
         if not self.open:
@@ -160,7 +160,7 @@ class Window:
             return
         body = int(self._core.model_array("geom_bodyid")[geom])
         if self._core.model_array("body_weldid")[body] == 0:
-            return  # nothing moves it
+            return  # it cannot move
         self._depth = float(self._core.depth(camera, *self._size)[y, x])
         self.spring.hold(body, self.orbit.place(x, y, self._depth, self._size))
 
@@ -175,7 +175,7 @@ class Window:
         elif right:
             self._steer().shift(across / self._size[1], down / self._size[1])
 
-    # --- what they see ---
+    # --- output ---
 
     def picture(self) -> npt.NDArray[np.uint8]:
         """Returns what the window shows, (height, width, 3)."""

@@ -109,7 +109,7 @@ def test_the_body_shows_what_was_felt(record):
     assert 0 < own.sum() < everything.sum()
     made = figures.touch_on_body({"6 months": record})
     assert [axes.get_xlabel() for axes in made.axes[:2]] == ["front", "back"]
-    assert "by the own body" in made.axes[-1].get_ylabel()
+    assert "by his own body" in made.axes[-1].get_ylabel()
 
 
 def test_the_raster_has_the_times_of_the_measures(record):

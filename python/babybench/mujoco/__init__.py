@@ -1,4 +1,4 @@
-"""MuJoCo's names on the engine of this package, without MuJoCo: models from MJCF documents, states, steps, pictures.
+"""MuJoCo's interface on the engine of this package, without MuJoCo: models from MJCF documents, states, steps, pictures.
 
 Example:
     >>> from babybench import mujoco
@@ -9,9 +9,9 @@ Example:
     >>> bool(data.qpos[2] < -0.19)
     True
 
-Names, shapes, number types and units are those of MuJoCo 3.3.0, and so are the numbers, to rounding. What the engine
-does not have is refused with an error that says what to do; it is never left out in silence. :func:`install` lets
-``import mujoco`` mean this module, with which Gymnasium's own MuJoCo environments run unchanged.
+Names, shapes, number types and units are those of MuJoCo 3.3.0; the numbers agree with it up to rounding. Features that the
+engine lacks are never silently ignored: they raise an error that says what to do. :func:`install` makes ``import mujoco``
+import this module, so that Gymnasium's own MuJoCo environments run unchanged.
 """
 
 from __future__ import annotations
@@ -63,10 +63,10 @@ from babybench_core.mujoco.vectors import *  # noqa: F403
 from . import rollout, viewer
 
 stands_in = True
-"""Tells this module from MuJoCo's own."""
+"""Distinguishes this module from MuJoCo's own."""
 
 __version__ = "3.3.0"
-"""The version of MuJoCo whose names and meaning are kept."""
+"""The version of MuJoCo that this module follows."""
 
 __all__ = [
     "MjData",

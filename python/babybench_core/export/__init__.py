@@ -1,7 +1,7 @@
 """Records in the formats of other programs: each by a library of its own, behind an extra of this package.
 
 ``python -m babybench export RECORD --to parquet,nwb --out DIR`` and the methods of
-:class:`babybench.data.Record` (``record.to_parquet(...)``) come here.
+:class:`babybench.data.Record` (``record.to_parquet(...)``) call this module.
 """
 
 from __future__ import annotations
@@ -44,7 +44,7 @@ def library(format: str) -> Any:
     """Imports the library of a format.
 
     Raises:
-        ModuleNotFoundError: It is not installed; the error says how to.
+        ModuleNotFoundError: It is not installed; the error says how to install it.
     """
     wanted = FORMATS[format]
     try:

@@ -14,7 +14,7 @@ def main(arguments: Sequence[str], program: str) -> None:
     """Runs the command with its arguments.
 
     Raises:
-        SystemExit: It has failed.
+        SystemExit: The command failed.
     """
     parser = argparse.ArgumentParser(
         prog=f"{program} export",

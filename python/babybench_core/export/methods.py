@@ -66,15 +66,14 @@ class Exports:
     def to_rerun(self, path: Union[str, Path], *, every: int = 1, eyes_every: int = 10) -> None:
         """Writes a recording for the viewer of Rerun (``pip install 'babybench[rerun]'``): ``rerun record.rrd`` shows it.
 
-        MIMo and the scene move in 3D, sensors that feel something are points on the skin, coloured by force; eyes are
-        images, angles, touch by region and rewards curves over the time of the simulation. Each episode is under a path of
-        its own.
+        MIMo and the scene move in 3D. Sensors that feel something are points on the skin, coloured by force. Eyes are images;
+        angles, touch by region and rewards are curves over simulated time. Each episode has its own path.
 
         Args:
             path: The file, ``.rrd``.
-            every: Every how many steps there is a pose.
-            eyes_every: Every how many steps there is a pair of images where the record has none: these are redrawn from
-                the recorded positions, as sharp as the resolution allows; 0 for none. Recorded images are taken as they are.
+            every: Number of steps from one pose to the next.
+            eyes_every: Number of steps from one pair of images to the next where the record has none: these are redrawn from
+                the recorded positions, as sharp as the resolution allows; 0 for none. Recorded images are used as they are.
 
         Raises:
             ModuleNotFoundError: rerun-sdk is not installed.
@@ -89,7 +88,7 @@ class Exports:
 
         Args:
             path: The folder.
-            every: Every how many steps there is a point.
+            every: Number of steps from one point to the next.
 
         Raises:
             ModuleNotFoundError: tensorboard is not installed.
@@ -102,7 +101,7 @@ class Exports:
     def to_minari(self, dataset_id: str = "babybench/record-v0", path: Optional[Union[str, Path]] = None) -> Any:
         """Makes a data set of Minari (``pip install 'babybench[minari]'``) for offline learning, and returns it.
 
-        Its observations are those of the environment, all of them: what was not recorded is repeated with the same bits.
+        It has all observations of the environment: those that were not recorded are computed again, with the same bits.
 
         Args:
             dataset_id: Its name: ``namespace/name-vN``.
@@ -110,7 +109,7 @@ class Exports:
 
         Raises:
             ModuleNotFoundError: minari is not installed.
-            ValueError: The record has no episodes, an episode cannot be repeated, or there is such a data set.
+            ValueError: The record has no episodes, an episode cannot be repeated, or the data set exists.
         """
         from babybench_core.export import minari
 

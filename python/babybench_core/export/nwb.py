@@ -102,7 +102,7 @@ def _clock(record: Record, starts: dict[int, float]) -> Any:
 
 
 def _touch(record: Record, starts: dict[int, float]) -> Any:
-    """Returns the touch of all steps as a table with lists: which numbers of the observation are not zero, and these."""
+    """Returns the touch of all steps as a table with lists: indices and values of the observation's nonzero numbers."""
     from hdmf.common import DynamicTable, VectorData, VectorIndex
 
     idx, val, ends, at = [], [], [], 0
@@ -113,9 +113,9 @@ def _touch(record: Record, starts: dict[int, float]) -> Any:
         ends.append(at + episode["touch_ptr"][1:].astype(np.int64))
         at += len(idx[-1])
     index = np.concatenate(ends)
-    place = VectorData(name="touch_idx", description="Places in the touch observation.", data=np.concatenate(idx))
+    place = VectorData(name="touch_idx", description="Indices in the touch observation.", data=np.concatenate(idx))
     value = VectorData(
-        name="touch_val", description="The values there, newtons; others are 0.", data=np.concatenate(val)
+        name="touch_val", description="Values at these indices, newtons; others are 0.", data=np.concatenate(val)
     )
     time = VectorData(name="time", description="Time after the step, seconds.", data=_clock(record, starts))
     columns = [

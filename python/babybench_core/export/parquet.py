@@ -47,8 +47,8 @@ def _table(episode: Episode) -> Any:
     for name, meaning in (("terminated", "Success or failure ended the episode."), ("truncated", "It was cut off.")):
         add(name, episode[name].astype(bool), "1", meaning)
     if "touch_ptr" in episode:
-        add("touch_idx", _lists(episode, "touch_ptr", "touch_idx", np.int32), "1", "Places in the touch observation.")
-        add("touch_val", _lists(episode, "touch_ptr", "touch_val", np.float32), "N", "The values there; others are 0.")
+        add("touch_idx", _lists(episode, "touch_ptr", "touch_idx", np.int32), "1", "Indices in the touch observation.")
+        add("touch_val", _lists(episode, "touch_ptr", "touch_val", np.float32), "N", "Values at these indices; others are 0.")
     for name, unit, meaning in (
         ("geom", "1", "Ids of both geoms of each contact, pair by pair."),
         ("pos", "m", "Positions of the contacts in the world, three numbers each."),

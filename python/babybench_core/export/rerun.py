@@ -33,7 +33,7 @@ def write(record: Record, path: Path, every: int, eyes_every: int) -> None:
     if every < 1 or eyes_every < 0:
         raise ValueError(f"every is {every} and eyes_every {eyes_every}; expected at least 1 and 0")
     numbers = episodes(record)
-    # poses follow from positions alone: nothing has to be felt or seen for them
+    # poses follow from positions alone, without any sense
     env = record.environment(vision_active=False, touch_active=False)
     env.reset()
     recording = rr.RecordingStream("babybench", recording_id=f"babybench {record.folder.resolve().name}")
@@ -74,7 +74,7 @@ def _layout(numbers: list[int]) -> Any:
 
 
 def _shapes(recording: Any, env: Any, root: str) -> None:
-    """Draws the geoms in the frames of their bodies; they stay."""
+    """Draws the geoms once, in the frames of their bodies."""
     import rerun as rr
 
     kind, size = env.array("geom_type"), env.array("geom_size").reshape(-1, 3)
@@ -93,7 +93,7 @@ def _shapes(recording: Any, env: Any, root: str) -> None:
         if group[geom] >= _HIDDEN:
             continue
         if kind[geom] == _PLANE:
-            # sizes of 0 mean planes without end
+            # a size of 0 is an infinite plane
             extent = [x if x > 0 else 5.0 for x in half[:2]]
             shape = rr.Boxes3D(
                 half_sizes=[[*extent, 0.001]], centers=[pos[geom]], quaternions=place["quaternions"], **solid
@@ -104,7 +104,7 @@ def _shapes(recording: Any, env: Any, root: str) -> None:
             radii = half if kind[geom] == _ELLIPSOID else np.repeat(half[0], 3)
             shape = rr.Ellipsoids3D(half_sizes=[radii], centers=[pos[geom]], quaternions=place["quaternions"], **solid)
         elif kind[geom] == _CAPSULE:
-            # Rerun's begin at one of their ends
+            # Rerun's capsules begin at one end
             down = pos[geom] - half[1] * _axis(quat[geom])
             shape = rr.Capsules3D(
                 lengths=[2 * half[1]],

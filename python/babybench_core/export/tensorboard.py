@@ -57,7 +57,7 @@ def _crc_table() -> npt.NDArray[np.uint32]:
 
 _CRC = _crc_table()
 _AT_ONCE = 512
-"""Steps whose events are made together."""
+"""Number of steps whose events are made together."""
 
 
 def _checksums(records: npt.NDArray[np.uint8]) -> npt.NDArray[np.uint32]:

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 _UNTOUCHED = "#dcdcdc"
 _POSE = {"shoulder_ad_ab": 0.1, "right_hip2": -0.12, "left_hip2": -0.12}
-"""How far limbs are spread, so that arms do not hide the trunk: parts of names of joints, rad."""
+"""Angles that spread the limbs, so that arms do not hide the trunk, by parts of the joints' names, rad."""
 
 
 def touch_on_body(records: Mapping[str, Record], *, what: str = "own", to_scale: bool = True) -> Figure:
@@ -28,7 +28,7 @@ def touch_on_body(records: Mapping[str, Record], *, what: str = "own", to_scale:
     logarithmic scale.
 
     Args:
-        records: Records by what they are called: stages of a training, ages.
+        records: Records by their labels: stages of a training, ages.
         what: ``own`` for touches of the body by itself, ``all`` for any touch, including that of the ground.
         to_scale: Whether bodies of several ages are drawn on one scale, instead of with one height.
 
@@ -48,7 +48,7 @@ def touch_on_body(records: Mapping[str, Record], *, what: str = "own", to_scale:
 
     norm = LogNorm(100 * low, 100 * max(high, 2 * low))
     tallest, widest = max(body.height for body in bodies.values()), max(body.width for body in bodies.values())
-    # each view is as wide as the widest body, with a little air
+    # each view is as wide as the widest body, with a margin
     room = 1.12 * widest
     across = min(1.15, 6.2 / (2 * len(records)))
     frame = [(room, tallest) if to_scale else (1.12 * body.width, body.height) for body in bodies.values()]
@@ -73,7 +73,7 @@ def touch_on_body(records: Mapping[str, Record], *, what: str = "own", to_scale:
                 annotation_clip=False,
             )
         _bar(panels[0], frame[0][1])
-        name = "touched by the own body,\n% of the time" if what == "own" else "touched, % of the time"
+        name = "touched by his own body,\n% of the time" if what == "own" else "touched, % of the time"
         made.colorbar(ScalarMappable(norm, _colours()), ax=list(panels), shrink=0.85, pad=0.02, label=name)
         from matplotlib.lines import Line2D
 
@@ -89,7 +89,7 @@ def _colours() -> Any:
 
 
 def _bar(axes: Any, height: float) -> None:
-    """Draws how long 10 cm are."""
+    """Draws a scale bar of 10 cm."""
     x, y = axes.get_xlim()[0] + 0.02 * height, axes.get_ylim()[1] - 0.08 * height
     axes.plot([x, x + 0.1], [y, y], color="black", linewidth=1.2, solid_capstyle="butt")
     axes.annotate("10 cm", (x + 0.05, y + 0.01 * height), ha="center", va="bottom", fontsize=6)
@@ -131,7 +131,7 @@ class _Body:
         sign = 1.0 if view == "front" else -1.0
         shown = sign * self._front > -0.25 * self._spacing
         order = np.flatnonzero(shown)
-        # what was touched lies above, so that it is seen
+        # touched sensors are drawn on top
         order = order[np.lexsort((sign * self._points[order, 0], felt[order] > 0))]
         across, along = -sign * self._points[order, 1], self._points[order, 2]
         bottom = self._points[:, 2].min()

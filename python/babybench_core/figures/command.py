@@ -15,20 +15,20 @@ def main(arguments: Sequence[str], program: str) -> None:
     """Runs the command with its arguments.
 
     Raises:
-        SystemExit: It has failed.
+        SystemExit: The command failed.
     """
     parser = argparse.ArgumentParser(
         prog=f"{program} figures",
-        description="Draws figures of results: of trainings learning curves, of records touch on the body and over time,"
-        " of benchmarks their means and touch by age.",
+        description="Draws figures of results: learning curves of trainings, touch of records on the body and over time, means"
+        " and touch by age of benchmarks.",
         epilog="RESULTS are folders: runs (save_dir), records (--record), benchmarks (--out of benchmark). NAME=FOLDER gives them"
-        " names in legends; runs of one name are its seeds, and so are runs without names that lie in one folder.",
+        " names in legends; runs with one name are its seeds, and so are runs without names in one folder.",
         allow_abbrev=False,
     )
     parser.add_argument("results", metavar="[NAME=]RESULTS", nargs="+", help="folders of runs, records or benchmarks")
     parser.add_argument("--out", required=True, metavar="DIR", type=Path, help="folder for the figures")
     parser.add_argument("--format", default="svg,pdf", help="svg, pdf, png; svg,pdf by default")
-    parser.add_argument("--metric", help=f"of learning curves: {', '.join(logs.METRICS)}")
+    parser.add_argument("--metric", help=f"metric of learning curves: {', '.join(logs.METRICS)}")
     parser.add_argument("--what", default="own", choices=["own", "all"], help="which touch is drawn on the body")
     args = parser.parse_args(arguments)
     formats = [name.strip() for name in args.format.split(",") if name.strip()]
@@ -80,7 +80,7 @@ def draw(results: Sequence[str], metric: str | None, what: str) -> list[tuple[st
 
 def _named(result: str) -> tuple[str, Path]:
     name, equals, path = result.partition("=")
-    # a folder may have that sign in its name
+    # a folder may have an equals sign in its name
     return (name, Path(path)) if equals and not Path(result).exists() else ("", Path(result))
 
 

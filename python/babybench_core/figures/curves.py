@@ -40,7 +40,7 @@ def learning_curves(runs: Runs, metric: Optional[str] = None, *, every_seed: boo
     """Draws the mean over seeds with its interval of 95 %, against the number of steps, for each of several learners.
 
     Args:
-        runs: By name, the runs of a learner, one for each seed: folders of runs, or files ``training.jsonl``.
+        runs: Runs of each learner by its name, one for each seed: folders of runs, or files ``training.jsonl``.
         metric: ``score`` (of all episodes so far), ``parts``, ``in view``, ``return`` or ``success`` (means over the last
             tenth of the episodes); by default the score, of tasks the return.
         every_seed: Whether each seed has a thin line of its own.
@@ -71,7 +71,7 @@ def learning_curves(runs: Runs, metric: Optional[str] = None, *, every_seed: boo
 
 
 def _curve(axes: Any, label: str, seeds: list[tuple[Any, Any]], colour: str, every_seed: bool) -> None:
-    # no curve is drawn beyond what each of its seeds has
+    # a curve ends with the shortest of its seeds
     first, last = max(x[0] for x, _ in seeds), min(x[-1] for x, _ in seeds)
     grid = np.linspace(min(first, last), last, _POINTS)
     values = np.stack([np.interp(grid, x, y) for x, y in seeds])
@@ -85,7 +85,7 @@ def _curve(axes: Any, label: str, seeds: list[tuple[Any, Any]], colour: str, eve
 
 
 def _steps_axis(axes: Any) -> None:
-    """Writes thousands and millions as such."""
+    """Labels thousands as k and millions as M."""
     from matplotlib.ticker import EngFormatter, MaxNLocator
 
     axes.xaxis.set_major_locator(MaxNLocator(5))
@@ -97,7 +97,7 @@ def benchmark_bars(path: Union[str, Path], metrics: Optional[Sequence[str]] = No
 
     Args:
         path: ``benchmark.json``, or the folder that has it.
-        metrics: Names of metrics, as in the file; by default score, parts, return, touches and double touch, those there are.
+        metrics: Names of metrics, as in the file; by default score, parts, return, touches and double touch, if present.
 
     Raises:
         ModuleNotFoundError: matplotlib is not installed.

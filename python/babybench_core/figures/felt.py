@@ -1,4 +1,4 @@
-"""Times in which touch sensors felt something, from any contact or only from the own body."""
+"""Times in which touch sensors felt something, from any contact or only from his own body."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from babybench_core.data import Episode, Record
 
 _NEAR = 0.03
-"""How far from a contact a sensor can be that feels it, m."""
+"""Largest distance at which a sensor feels a contact, m."""
 
 
 def shares(record: Record, what: str) -> npt.NDArray[np.float64]:
@@ -24,7 +24,7 @@ def shares(record: Record, what: str) -> npt.NDArray[np.float64]:
         what: ``own`` for touches of the body by itself, ``all`` for any touch.
 
     Raises:
-        ValueError: Without touch, without episodes, or another ``what``.
+        ValueError: The record has no touch or no episodes, or ``what`` is another word.
     """
     if what not in ("own", "all"):
         raise ValueError(f"what is {what!r}, expected 'own' or 'all'")
@@ -56,7 +56,7 @@ class _Poses:
         self.body_of_geom = env.array("geom_bodyid").astype(int)
 
     def at(self, qpos: npt.NDArray[Any]) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]:
-        """Returns places (bodies, 3) and frames (bodies, 3, 3)."""
+        """Returns positions (bodies, 3) and frames (bodies, 3, 3)."""
         self._parts.forward(qpos.astype(np.float64), np.zeros(len(self._env.array("qvel"))))
         core = self._env._core
         return core.state_array("xpos").reshape(-1, 3), core.state_array("xmat").reshape(-1, 3, 3)
@@ -65,7 +65,7 @@ class _Poses:
 def _own(
     episode: Episode, poses: _Poses, step: npt.NDArray[np.intp], sensor: npt.NDArray[np.intp]
 ) -> npt.NDArray[np.bool_]:
-    """Returns, for each touch of a sensor, whether it comes from the own body."""
+    """Returns, for each touch of a sensor, whether it comes from his own body."""
     skin, geoms = episode.record.skin(), episode.manifest["geoms"]
     own = np.array([geom["region"] is not None for geom in geoms])
     pairs = episode["contact_geom"].astype(int)
@@ -92,7 +92,7 @@ def _own(
         )
         points = episode["contact_pos"][span][mine]
         far = np.linalg.norm(at[:, None] - points[None], axis=2)
-        # a contact is felt by the two bodies that it is of
+        # both bodies of a contact feel it
         sides = (touched[unsure][:, None, None] == bodies[span][mine][None]).any(2)
         kept[unsure] = (sides & (far <= _NEAR)).any(1)
     return kept

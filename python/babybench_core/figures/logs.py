@@ -15,7 +15,7 @@ Floats = npt.NDArray[np.float64]
 _SCORED = 34
 """Parts in the denominator of the score for each hand."""
 _WINDOW = 0.1
-"""The share of the episodes so far of which a moving mean is taken."""
+"""Window of moving means, as a share of the episodes so far."""
 
 METRICS = {
     "score": "score",

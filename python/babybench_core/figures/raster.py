@@ -51,8 +51,8 @@ def touch_raster(episode: Episode, *, start: float = 0.0, end: Optional[float] =
 
     Args:
         episode: An episode of a record.
-        start: Where the time begins, s.
-        end: Where it ends, s; by default with the episode.
+        start: Start of the time axis, s.
+        end: End of the time axis, s; by default the end of the episode.
 
     Raises:
         ModuleNotFoundError: matplotlib is not installed.
@@ -96,7 +96,7 @@ def touch_raster(episode: Episode, *, start: float = 0.0, end: Optional[float] =
 def _whose(region: str) -> tuple[str, ...]:
     if region in ("head", "trunk"):
         return ("",)
-    # a hand's own hand is itself
+    # a hand does not touch itself
     return ("other ",) if region == "hand" else ("own ", "other ")
 
 

@@ -22,7 +22,7 @@ def interval(values: Floats) -> tuple[Floats, Floats, Floats]:
     mean = values.mean(0)
     if seeds == 1:
         return mean, mean, mean
-    # samples are drawn once, for all points alike
+    # the same samples serve all points
     drawn = np.random.default_rng(0).integers(seeds, size=(_SAMPLES, seeds))
     weights = np.apply_along_axis(np.bincount, 1, drawn, minlength=seeds) / seeds
     low, high = np.percentile(weights @ values, [2.5, 97.5], axis=0)

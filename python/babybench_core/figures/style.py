@@ -21,7 +21,7 @@ def library() -> Any:
     """Imports matplotlib.
 
     Raises:
-        ModuleNotFoundError: It is not installed; the error says how to.
+        ModuleNotFoundError: It is not installed; the error says how to install it.
     """
     try:
         import matplotlib

@@ -1,4 +1,4 @@
-"""Functions of programs that MuJoCo calls: they can be asked for and reset, and setting one is refused."""
+"""Functions of programs that MuJoCo calls: they can be read and reset, and setting one is refused."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Constants of a model that follow from its masses: ``mj_setConst``; and contacts by themselves: ``mj_collision``."""
+"""Constants that follow from a model's masses, ``mj_setConst``, and contacts alone, ``mj_collision``."""
 
 from __future__ import annotations
 
@@ -18,13 +18,13 @@ _FREE, _BALL = 0, 1
 
 
 def mj_collision(m: MjModel, d: MjData) -> None:
-    """Finds contacts, with their rows of constraints, at the poses of ``qpos``."""
+    """Finds contacts, with their constraint rows, at the poses of ``qpos``."""
     check(m, d)
     d._compute("kinematics", "com", "constraints")
 
 
 def _mass_matrix(m: MjModel, d: MjData) -> _Floats:
-    """Returns the inertia in joint space at the poses of the state."""
+    """Returns the joint-space inertia at the poses of the state."""
     matrix = np.diag(np.array(m.dof_armature, np.float64))
     for body in range(1, m.nbody):
         dofs, translation, rotation = _columns(m, d, d.xipos[body], body)
@@ -35,7 +35,7 @@ def _mass_matrix(m: MjModel, d: MjData) -> _Floats:
 
 
 def _of_bodies(m: MjModel, d: MjData, inverse: _Floats) -> _Floats:
-    """Returns how much each body gives way to a force and to a torque at its centre of mass, (nbody, 2)."""
+    """Returns the inverse weight of each body for a force and for a torque at its centre of mass, (nbody, 2)."""
     found = np.zeros((m.nbody, 2))
     for body in range(1, m.nbody):
         dofs, *columns = _columns(m, d, d.xipos[body], body)
@@ -45,7 +45,7 @@ def _of_bodies(m: MjModel, d: MjData, inverse: _Floats) -> _Floats:
 
 
 def _of_joints(m: MjModel, inverse: _Floats) -> _Floats:
-    """Returns how much each degree of freedom gives way, (nv,); those of a ball, and of a free joint's halves, are alike."""
+    """Returns the inverse weight of each degree of freedom, (nv,), averaged over a ball joint and each half of a free joint."""
     found: _Floats = np.diag(inverse).copy()
     for kind, first in zip(m.jnt_type, m.jnt_dofadr):
         halves = (0, 3) if kind == _FREE else (0,) if kind == _BALL else ()
@@ -55,7 +55,7 @@ def _of_joints(m: MjModel, inverse: _Floats) -> _Floats:
 
 
 def _check_tendons(m: MjModel, gives_way: _Floats) -> None:
-    """Refuses changes of bodies that may belong to a tendon: all but those that are alone in the world."""
+    """Refuses changes to bodies that a tendon may involve: all but those that are alone in the world."""
     known = np.asarray(m.body_invweight0)
     changed = np.flatnonzero((abs(gives_way - known) > 1e-6 * abs(known)).any(axis=1))
     parents = np.asarray(m.body_parentid)
@@ -73,14 +73,14 @@ def _show(m: Any, name: str, values: _Floats) -> None:
 
 
 def mj_setConst(m: MjModel, d: MjData) -> None:
-    """Computes what follows from masses anew: ``body_invweight0``, ``dof_invweight0``, ``dof_M0``, ``body_subtreemass``.
+    """Recomputes what follows from masses: ``body_invweight0``, ``dof_invweight0``, ``dof_M0``, ``body_subtreemass``.
 
-    As in MuJoCo the state is then at the positions of the springs, ``qpos_spring``. The statistics (``model.stat``) and
-    ``actuator_acc0`` stay.
+    As in MuJoCo, the state is then at the positions of the springs, ``qpos_spring``. The statistics (``model.stat``) and
+    ``actuator_acc0`` do not change.
 
     Raises:
-        NotImplementedError: The model has tendons, whose constants are not computed here, and the mass of a body changed that is
-            not alone.
+        NotImplementedError: The model has tendons, whose constants are not computed here, and the mass of a body that is not
+            alone changed.
     """
     check(m, d)
     d.qpos[:] = m.qpos0

@@ -38,9 +38,9 @@ _INPUTS = (
     *("qpos", "qvel", "act", "ctrl", "qfrc_applied", "xfrc_applied", "mocap_pos", "mocap_quat", "qacc_warmstart"),
 )
 _FLEXES = ("flexvert_xpos", "flexedge_length", "flexedge_velocity")
-"""Places of the vertices of flexes, lengths of their edges and rates of these, as copies."""
+"""Positions of the vertices of flexes, lengths of their edges and the rates of these, as copies."""
 _COUNTED = {"ne": (0,), "nf": (1, 2), "nl": (3, 4)}
-"""Counts that MuJoCo keeps of the rows of constraints, by their types."""
+"""Numbers of constraint rows by type."""
 
 
 _SIMPLEST = "<mujoco><worldbody><body><geom size='1'/></body></worldbody></mujoco>"
@@ -49,10 +49,10 @@ _SIMPLEST = "<mujoco><worldbody><body><geom size='1'/></body></worldbody></mujoc
 class MjData(Named, metaclass=Fields):
     """A state of a model, under the names and in the shapes of MuJoCo's ``MjData``.
 
-    The arrays are the same memory for as long as the state lives: what is written into ``qpos``, ``qvel``, ``act``,
-    ``ctrl``, ``qfrc_applied``, ``xfrc_applied``, ``mocap_pos``, ``mocap_quat``, ``qacc_warmstart``, ``eq_active`` and
-    ``time`` counts from the next computation on, and the others show what the last one found. Contacts, rows of
-    constraints and ``qM`` are fresh copies each time.
+    The arrays keep their memory for the lifetime of the state. The next computation uses what was written into ``qpos``,
+    ``qvel``, ``act``, ``ctrl``, ``qfrc_applied``, ``xfrc_applied``, ``mocap_pos``, ``mocap_quat``, ``qacc_warmstart``,
+    ``eq_active`` and ``time``; the other arrays hold the results of the last one. Contacts, constraint rows and ``qM`` are
+    fresh copies each time.
     """
 
     model: MjModel
@@ -95,7 +95,7 @@ class MjData(Named, metaclass=Fields):
         """The contacts as they were last computed."""
         contacts = ContactList(self._own.contacts())
         columns = contacts._columns
-        # only what is a constraint with friction has one, and what is none lies in the gap
+        # only constraints with friction have `mu`; contacts in the gap are not constraints
         rubs = (columns["efc_address"] >= 0) & (columns["dim"] > 1)
         columns["mu"] = np.where(rubs, columns["mu"] / np.sqrt(self.model.opt.impratio), 0.0)
         columns["exclude"] = (columns["dist"] >= columns["includemargin"]).astype(np.int32)
@@ -108,23 +108,23 @@ class MjData(Named, metaclass=Fields):
 
     @property
     def nefc(self) -> int:
-        """Number of rows of constraints."""
+        """Number of constraint rows."""
         return int(self._own.counts[1])
 
     @property
     def qM(self) -> NDArray[np.float64]:
-        """Inertia in joint space, in MuJoCo's sparse order (nM); :func:`mj_fullM` makes a matrix of it."""
+        """Joint-space inertia, in MuJoCo's sparse order (nM); :func:`mj_fullM` makes a full matrix of it."""
         matrix: NDArray[np.float64] = self._own.inertia()[matrix_places(self.model)]
         return matrix
 
     @property
     def ten_J(self) -> NDArray[np.float64]:
-        """Rates of the lengths of tendons by velocities, (ntendon, nv)."""
+        """Jacobian of the lengths of tendons, (ntendon, nv)."""
         rates: NDArray[np.float64] = self._own.tendon_jacobian()
         return rates
 
     def __getattr__(self, name: str) -> Any:
-        """Returns rows of constraints, ``efc_force`` and the like, and numbers of them."""
+        """Returns arrays of constraint rows, such as ``efc_force``, and numbers of rows."""
         if name.startswith("_") or "_own" not in self.__dict__:
             raise AttributeError(name)
         if name == "efc_J":
@@ -163,7 +163,7 @@ class MjData(Named, metaclass=Fields):
 
     @property
     def subtree_angmom(self) -> NDArray[np.float64]:
-        """Angular momenta of subtrees about their centres of mass, (nbody, 3), kg m^2/s, as :attr:`subtree_linvel`."""
+        """Angular momenta of subtrees about their centres of mass, (nbody, 3), kg m^2/s; see :attr:`subtree_linvel`."""
         return self._velocities_of_subtrees()[1]
 
     def _velocities_of_subtrees(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
@@ -175,7 +175,7 @@ class MjData(Named, metaclass=Fields):
         return subtrees
 
     def _subtree_velocities(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """Returns velocities and angular momenta of subtrees by the current ``cvel``."""
+        """Returns velocities and angular momenta of subtrees from the current ``cvel``."""
         m = self.model
         masses, parents = np.asarray(m.body_mass)[:, None], np.asarray(m.body_parentid)
         offsets = self.xipos - self.subtree_com[m.body_rootid]
@@ -216,7 +216,7 @@ class MjData(Named, metaclass=Fields):
         return MjData(self.model.__copy__())._take(self)
 
     def __reduce__(self) -> tuple[Any, ...]:
-        """Pickles the model with the state; what a state computes is computed once more where it is unpickled."""
+        """Pickles the model with the state. Derived quantities are recomputed on unpickling."""
         inputs = {name: np.array(self._arrays[name]) for name in (*_INPUTS, "userdata", "eq_active")}
         others = {name: np.array(array) for name, array in self._arrays.items() if name not in inputs}
         return _restored, (self.model, self.time, inputs, others)
@@ -268,13 +268,13 @@ class MjData(Named, metaclass=Fields):
 
 
 def _restored(model: MjModel, time: float, inputs: dict[str, NDArray[Any]], others: dict[str, NDArray[Any]]) -> MjData:
-    """Makes a state again from what was pickled."""
+    """Restores a pickled state."""
     data = MjData(model)
     for name, values in inputs.items():
         data._arrays[name][...] = values
     data.time = time
     if others["xquat"].any():
-        # contacts and rows of constraints are no arrays
+        # contacts and constraint rows are not arrays
         data._compute("input", "constraints")
     for name, values in {**others, **inputs}.items():
         data._arrays[name][...] = values

@@ -42,7 +42,7 @@ def _matrix_addresses(m: Any) -> NDArray[np.int32]:
 
 
 def matrix_places(m: Any) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
-    """Returns the row and the column in full of each number of ``qM``."""
+    """Returns the row and the column in the full matrix of each number of ``qM``."""
     found = m.__dict__.get("_places")
     if found is None:
         rows, columns = [], []

@@ -209,7 +209,7 @@ class mjtEq(enum.IntEnum):
 
 
 class mjtConstraint(enum.IntEnum):
-    """Types of rows of constraints."""
+    """Types of constraint rows."""
 
     mjCNSTR_EQUALITY = 0
     mjCNSTR_FRICTION_DOF = 1

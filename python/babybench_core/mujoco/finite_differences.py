@@ -23,7 +23,7 @@ _Out = Optional[NDArray[np.float64]]
 
 
 class _Stepper:
-    """Steps from a state again and again."""
+    """Repeated steps from one state."""
 
     def __init__(self, m: MjModel, d: MjData) -> None:
         self.m, self.d = m, d
@@ -35,7 +35,7 @@ class _Stepper:
         mj_getState(m, d, self.start, self.spec)
 
     def after(self, nudge: Callable[[], None]) -> tuple[_Floats, _Floats, _Floats]:
-        """Returns positions, other parts of the state and sensors one step after a nudge, and goes back."""
+        """Returns positions, other parts of the state and sensors one step after a nudge, and restores the state."""
         nudge()
         mj_step(self.m, self.d)
         found = self.d.qpos.copy(), np.concatenate([self.d.qvel, self.d.act]), self.d.sensordata.copy()
@@ -43,7 +43,7 @@ class _Stepper:
         return found
 
     def between(self, first: tuple[_Floats, ...], second: tuple[_Floats, ...], by: float) -> tuple[_Floats, _Floats]:
-        """Returns how states and sensors change from one to the other, per unit."""
+        """Returns the differences of states and of sensors from the first to the second, per unit."""
         turned = np.zeros(self.m.nv)
         mj_differentiatePos(self.m, turned, by, first[0], second[0])
         return np.concatenate([turned, (second[1] - first[1]) / by]), (second[2] - first[2]) / by
@@ -54,14 +54,13 @@ def mjd_transitionFD(m: MjModel, d: MjData, eps: float, flg_centered: int, A: _O
 
     Args:
         m: Model.
-        d: State; it is as before afterwards, except what is computed.
+        d: State; restored afterwards, except for derived quantities.
         eps: Size of the differences.
-        flg_centered: Whether they are taken to both sides.
-        A: The next state by the state, (2 nv + na, 2 nv + na): positions as velocities.
+        flg_centered: Whether the differences are centered.
+        A: The next state by the state, (2 nv + na, 2 nv + na), with positions in tangent space.
         B: The next state by the controls, (2 nv + na, nu).
         C: Sensors by the state, (nsensordata, 2 nv + na).
-        D: Sensors by the controls, (nsensordata, nu); of the wrong sign where differences are taken to both sides, as in MuJoCo
-            3.3.0.
+        D: Sensors by the controls, (nsensordata, nu); with the wrong sign for centered differences, as in MuJoCo 3.3.0.
 
     Raises:
         TypeError: A matrix has another shape.
@@ -125,7 +124,7 @@ def _by_controls(
         if B is not None:
             B[:, index] = state
         if D is not None:
-            # MuJoCo 3.3.0 turns the sign where it takes both sides
+            # MuJoCo 3.3.0 inverts the sign of centered differences
             D[:, index] = -sensors if up and down else sensors
 
 
@@ -142,12 +141,12 @@ def mjd_inverseFD(
     DsDa: _Out,
     DmDq: _Out,
 ) -> None:
-    """Computes how inverse dynamics change with positions, velocities and accelerations, by differences to one side.
+    """Computes how inverse dynamics change with positions, velocities and accelerations, by forward differences.
 
     Row i of a matrix (nv, nv) is the change of ``qfrc_inverse`` by the i-th number.
 
     Raises:
-        NotImplementedError: Derivatives of sensors or of the inertia are asked for.
+        NotImplementedError: Derivatives of sensors or of the inertia are requested.
     """
     check(m, d)
     if any(matrix is not None for matrix in (DsDq, DsDv, DsDa, DmDq)):

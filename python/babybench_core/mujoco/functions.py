@@ -57,12 +57,12 @@ _Velocity = ("com_velocity", "velocity")
 
 
 def mj_version() -> int:
-    """Returns the version of MuJoCo whose meaning is kept."""
+    """Returns the version of MuJoCo that this module follows."""
     return 330
 
 
 def mj_versionString() -> str:
-    """Returns the version of MuJoCo whose meaning is kept."""
+    """Returns the version of MuJoCo that this module follows."""
     return "3.3.0"
 
 
@@ -86,7 +86,7 @@ def _names(m: Any, type: int) -> list[str]:
 
 
 def mj_id2name(m: MjModel, type: int, id: int) -> str | None:
-    """Returns the name of an element; nothing if it has none or does not exist."""
+    """Returns the name of an element; ``None`` if it has none or does not exist."""
     names = _names(m, type)
     return (names[id] or None) if 0 <= id < len(names) else None
 
@@ -129,7 +129,7 @@ def mj_forward(m: MjModel, d: MjData) -> None:
 
 
 def mj_fwdPosition(m: MjModel, d: MjData) -> None:
-    """Computes all that follows from positions: poses, inertia, contacts, rows of constraints."""
+    """Computes all that follows from positions: poses, inertia, contacts, constraint rows."""
     check(m, d)
     d._compute(*_Position, "constraints")
 
@@ -181,7 +181,7 @@ def _fixed_between(d: MjData) -> list[_Floats]:
 
 
 def mj_step1(m: MjModel, d: MjData) -> None:
-    """Computes the first part of a step, which controls do not change; :func:`mj_step2` does the rest."""
+    """Computes the part of a step that does not depend on controls; :func:`mj_step2` does the rest."""
     check(m, d)
     d._compute(*_Position, *_Velocity, "constraints")
     early = np.repeat(m.sensor_needstage < 3, m.sensor_dim)
@@ -190,13 +190,13 @@ def mj_step1(m: MjModel, d: MjData) -> None:
 
 
 def _moved(start: list[_Floats], d: MjData) -> bool:
-    """Returns whether a program has changed positions or velocities, and nothing else, since a step was begun."""
+    """Returns whether a program has changed positions or velocities, and nothing else, since a step began."""
     same = [np.array_equal(was, now) for was, now in zip(start, _fixed_between(d))]
     return same[2:] == [True, True, True] and not all(same)
 
 
 def _advance_from(m: MjModel, d: MjData, start: list[_Floats]) -> None:
-    """Advances positions and velocities of now by the accelerations of those from which the step was begun, as MuJoCo does."""
+    """Advances the current positions and velocities by the accelerations of the state where the step began, as MuJoCo does."""
     at = d.qpos.copy(), d.qvel.copy()
     d.qpos[:], d.qvel[:] = start[:2]
     mj_forward(m, d)
@@ -216,8 +216,8 @@ def mj_step2(m: MjModel, d: MjData) -> None:
     """Does the rest of a step that :func:`mj_step1` or :func:`mj_forward` began: actuators, accelerations, integration.
 
     Raises:
-        NotImplementedError: The model is integrated by Runge and Kutta's method, which has no such halves.
-        RuntimeError: No step was begun; or positions or velocities have changed since, and the model has activations or an
+        NotImplementedError: The integrator is Runge-Kutta's, which has no such halves.
+        RuntimeError: No step began; or positions or velocities have changed since, and the model has activations or an
             implicit integrator.
     """
     check(m, d)
@@ -274,7 +274,7 @@ def mj_setKeyframe(m: MjModel, d: MjData, k: int) -> None:
 
     Raises:
         IndexError: The keyframe does not exist.
-        ValueError: Mocap bodies are elsewhere than in the keyframe, whose poses of them cannot be changed.
+        ValueError: Mocap bodies are not at their poses in the keyframe, which cannot be changed.
     """
     check(m, d)
     if not 0 <= k < m.nkey:
@@ -294,7 +294,7 @@ def mj_copyData(dest: MjData, m: MjModel, src: MjData) -> MjData:
 
 
 def mj_fullM(m: MjModel, dst: _Floats, M: ArrayLike) -> None:
-    """Makes a full matrix (nv, nv) of an inertia in MuJoCo's sparse order, ``data.qM``."""
+    """Expands an inertia in MuJoCo's sparse order, ``data.qM``, to a full matrix, (nv, nv)."""
     values = np.asarray(M, np.float64).reshape(-1)
     rows, columns = matrix_places(m)
     if np.shape(dst) != (m.nv, m.nv) or values.shape != rows.shape:
@@ -311,7 +311,7 @@ def mj_mulM(m: MjModel, d: MjData, res: _Floats, vec: ArrayLike) -> None:
 
 
 def mj_solveM(m: MjModel, d: MjData, x: _Floats, y: ArrayLike) -> None:
-    """Divides vectors, (nv,) or (n, nv), by the inertia matrix."""
+    """Multiplies vectors, (nv,) or (n, nv), by the inverse of the inertia matrix."""
     check(m, d)
     x[...] = np.linalg.solve(d._own.inertia(), np.asarray(y, np.float64).T).T
 
@@ -389,7 +389,7 @@ def mj_differentiatePos(m: MjModel, qvel: _Floats, dt: float, qpos1: ArrayLike, 
 
 
 def mj_normalizeQuat(m: MjModel, qpos: _Floats) -> None:
-    """Makes the quaternions in positions (nq) unit ones."""
+    """Normalizes the quaternions in positions (nq)."""
     for kind, q, _ in _joints(m):
         if kind in (_FREE, _BALL):
             start = q + 3 if kind == _FREE else q
@@ -411,7 +411,7 @@ def _parts(d: MjData, spec: int) -> list[NDArray[Any]]:
 
 
 def mj_stateSize(m: MjModel, spec: int) -> int:
-    """Returns how many numbers parts of a state have: a sum of ``mjtState``."""
+    """Returns the number of values in parts of a state, given as a sum of ``mjtState``."""
     moved = (3 * m.nmocap, 4 * m.nmocap)
     sizes = (1, m.nq, m.nv, m.na, m.nv, m.nu, m.nv, 6 * m.nbody, m.neq, *moved, m.nuserdata)
     if not 0 <= int(spec) < 1 << mjtState.mjNSTATE:

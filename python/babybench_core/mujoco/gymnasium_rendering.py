@@ -1,4 +1,4 @@
-"""Stands for ``gymnasium.envs.mujoco.mujoco_rendering``: pictures of Gymnasium's environments without OpenGL."""
+"""Replaces ``gymnasium.envs.mujoco.mujoco_rendering``: pictures of Gymnasium's environments without OpenGL."""
 
 from __future__ import annotations
 
@@ -79,7 +79,7 @@ class MujocoRenderer:
         camera_name: str | None = None,
         visual_options: dict[int, bool] | None = None,
     ) -> None:
-        """Takes the size of pictures, pixels, and the camera: a free one unless one of the model's is asked for."""
+        """Takes the size of pictures, pixels, and the camera: a free one unless one of the model's is requested."""
         if visual_options:
             raise NotImplementedError("visual_options are not supported: pictures show what MuJoCo shows by default")
         self.model, self.data = model, data

@@ -1,4 +1,4 @@
-"""Lets ``import mujoco`` mean :mod:`babybench.mujoco`, for programs that are to run unchanged."""
+"""Makes ``import mujoco`` import :mod:`babybench.mujoco`, so that programs run unchanged."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ def _own() -> dict[str, ModuleType]:
 
 
 def put() -> ModuleType:
-    """Puts the modules into the place of MuJoCo's and of Gymnasium's renderer, unless they were imported already."""
+    """Puts the modules in place of MuJoCo's and of Gymnasium's renderer, unless those were imported already."""
     own = _own()
     sys.modules[_NAME] = own[_NAME]
     for name, module in own.items():
@@ -53,7 +53,7 @@ def _real(module: ModuleType | None) -> bool:
 
 
 def install() -> ModuleType:
-    """Lets ``import mujoco`` mean :mod:`babybench.mujoco` in this process, and lets Gymnasium draw without OpenGL.
+    """Makes ``import mujoco`` import :mod:`babybench.mujoco` in this process, and lets Gymnasium draw without OpenGL.
 
     Gymnasium's own MuJoCo environments then run unchanged on the engine of this package, whether MuJoCo is installed or
     not. Call it before anything imports ``mujoco``; calling it again does nothing.
@@ -68,8 +68,8 @@ def install() -> ModuleType:
         The module :mod:`babybench.mujoco`.
 
     Raises:
-        RuntimeError: MuJoCo itself was imported already, or Gymnasium's environments with what stood in for it; nothing
-            is changed.
+        RuntimeError: MuJoCo itself was imported already, or Gymnasium's environments with a stand-in for it; nothing is
+            changed.
     """
     own = _own()
     present = sys.modules.get(_NAME)
@@ -78,7 +78,7 @@ def install() -> ModuleType:
     environments = sys.modules.get(_ENVIRONMENTS)
     if _real(present):
         raise RuntimeError(
-            f"MuJoCo itself was imported already ({getattr(present, '__file__', None)}): what has it would go on with it. Call "
+            f"MuJoCo itself was imported already ({getattr(present, '__file__', None)}): its importers would keep it. Call "
             "babybench.mujoco.install() before anything imports mujoco, or import babybench.mujoco under a name of its own"
         )
     if environments is not None and getattr(environments, _NAME, None) is not own[_NAME]:
@@ -94,7 +94,7 @@ def uninstall() -> None:
     """Reverts :func:`install` for later imports. Modules that have imported ``mujoco`` keep it.
 
     Raises:
-        RuntimeError: Gymnasium's environments were imported meanwhile: they would mix both.
+        RuntimeError: Gymnasium's environments were imported meanwhile, and would mix both.
     """
     own = _own()
     if sys.modules.get(_NAME) is not own[_NAME]:

@@ -30,7 +30,7 @@ def _off(m: MjModel, bit: mjtDisableBit) -> bool:
 
 
 def _only(d: MjData, groups: tuple[str, ...], names: tuple[str, ...]) -> None:
-    """Computes groups of arrays, and shows some arrays of them; the others keep their numbers."""
+    """Computes groups of arrays and updates some of their arrays; the others keep their numbers."""
     bits = sum(_native.PhysicsData.GROUPS[group] for group in groups)
     others = [d._arrays[name] for name, group, _ in d._own.layout if group & bits and name not in names]
     kept = [array.copy() for array in others]
@@ -58,7 +58,7 @@ def mj_fwdConstraint(m: MjModel, d: MjData) -> None:
 
 
 def mj_makeConstraint(m: MjModel, d: MjData) -> None:
-    """Makes the rows of constraints, with contacts, at the poses of ``qpos``."""
+    """Makes the constraint rows, with contacts, at the poses of ``qpos``."""
     check(m, d)
     d._compute("constraints")
 
@@ -80,7 +80,7 @@ def mj_passive(m: MjModel, d: MjData) -> None:
 
 
 def mj_rne(m: MjModel, d: MjData, flg_acc: int, result: _Floats) -> None:
-    """Computes the forces of gravity and velocities (nv), with those of accelerations if ``flg_acc``; without armature."""
+    """Computes the forces due to gravity and velocities (nv), and to accelerations if ``flg_acc``; without armature."""
     check(m, d)
     before = d.qfrc_bias.copy()
     _only(d, ("velocity",), ("qfrc_bias",))
@@ -120,9 +120,9 @@ def mj_setTotalmass(m: MjModel, newmass: float) -> None:
 
 
 def mj_geomDistance(m: MjModel, d: MjData, geom1: int, geom2: int, distmax: float, fromto: Optional[_Floats]) -> float:
-    """Returns the distance of two geoms, m: negative where they overlap, at most ``distmax``.
+    """Returns the distance between two geoms, m: negative where they overlap, at most ``distmax``.
 
-    ``fromto`` (6) takes the points between which it is measured, or zeros where it is ``distmax``.
+    ``fromto`` (6) receives the points between which it is measured, or zeros where it is ``distmax``.
 
     Raises:
         ValueError: A geom does not exist.
@@ -140,7 +140,7 @@ def mj_geomDistance(m: MjModel, d: MjData, geom1: int, geom2: int, distmax: floa
 
 
 def mj_energyPos(m: MjModel, d: MjData) -> None:
-    """Computes the energy of heights and springs, ``data.energy[0]``, J."""
+    """Computes the potential energy of gravity and springs, ``data.energy[0]``, J."""
     check(m, d)
     gravity = np.zeros(3) if _off(m, mjtDisableBit.mjDSBL_GRAVITY) else np.asarray(m.opt.gravity)
     energy = -float(sum(m.body_mass[body] * (gravity @ d.xipos[body]) for body in range(1, m.nbody)))
@@ -171,7 +171,7 @@ def _spring(m: MjModel, d: MjData, joint: int) -> float:
 
 
 def mj_energyVel(m: MjModel, d: MjData) -> None:
-    """Computes the energy of motion, ``data.energy[1]``, J."""
+    """Computes the kinetic energy, ``data.energy[1]``, J."""
     check(m, d)
     d.energy[1] = 0.5 * d.qvel @ (d._own.inertia() @ d.qvel)
 
@@ -183,17 +183,17 @@ def mj_subtreeVel(m: MjModel, d: MjData) -> None:
 
 
 def mj_invPosition(m: MjModel, d: MjData) -> None:
-    """Computes what inverse dynamics need of positions."""
+    """Computes what inverse dynamics need from positions."""
     mj_fwdPosition(m, d)
 
 
 def mj_invVelocity(m: MjModel, d: MjData) -> None:
-    """Computes what inverse dynamics need of velocities."""
+    """Computes what inverse dynamics need from velocities."""
     mj_fwdVelocity(m, d)
 
 
 def _friction_losses(m: MjModel, rows: dict[str, NDArray[Any]]) -> _Floats:
-    """Returns the largest force of dry friction of each row that is one; 0 for the others."""
+    """Returns the largest force of each row of dry friction; 0 for other rows."""
     kinds, ids = rows["type"], rows["id"]
     losses = np.zeros(len(kinds))
     of_dofs, of_tendons = kinds == mjtConstraint.mjCNSTR_FRICTION_DOF, kinds == mjtConstraint.mjCNSTR_FRICTION_TENDON
@@ -203,7 +203,7 @@ def _friction_losses(m: MjModel, rows: dict[str, NDArray[Any]]) -> _Floats:
 
 
 def _cone(jar: _Floats, weights: _Floats, mu: float, friction: _Floats) -> _Floats:
-    """Returns the force of a contact with an elliptic cone: nothing, that of a violated one, or one on the cone."""
+    """Returns the force of a contact with an elliptic cone: zero, inside the cone, or on its surface."""
     scaled = jar * np.concatenate([[mu], friction])
     normal, tangent = scaled[0], float(np.linalg.norm(scaled[1:]))
     if normal >= mu * tangent or (tangent <= 0 and normal >= 0):
@@ -218,7 +218,7 @@ def _cone(jar: _Floats, weights: _Floats, mu: float, friction: _Floats) -> _Floa
 
 
 def constraint_force(m: MjModel, d: MjData, jar: _Floats) -> _Floats:
-    """Returns the forces (nefc) at which constraints rest where they are accelerated by ``jar`` more than they would be."""
+    """Returns the constraint forces (nefc) for ``jar``, the constraints' accelerations minus their reference accelerations."""
     rows = d._own.rows()
     kinds, weights = rows["type"], np.asarray(rows["D"], np.float64)
     losses = _friction_losses(m, rows)
@@ -239,7 +239,7 @@ def constraint_force(m: MjModel, d: MjData, jar: _Floats) -> _Floats:
 
 
 def mj_invConstraint(m: MjModel, d: MjData) -> None:
-    """Computes the forces of constraints, ``qfrc_constraint``, from accelerations; ``efc_force`` stays."""
+    """Computes the forces of constraints, ``qfrc_constraint``, from accelerations; ``efc_force`` does not change."""
     check(m, d)
     if not d.nefc:
         d.qfrc_constraint[:] = 0
@@ -250,7 +250,7 @@ def mj_invConstraint(m: MjModel, d: MjData) -> None:
 
 
 def mj_inverse(m: MjModel, d: MjData) -> None:
-    """Computes the forces, ``qfrc_inverse``, with which positions, velocities and ``qacc`` follow one another.
+    """Computes the forces, ``qfrc_inverse``, that cause ``qacc`` at the current positions and velocities.
 
     Raises:
         NotImplementedError: The model has the flag ``invdiscrete``.
@@ -272,7 +272,7 @@ def mj_inverse(m: MjModel, d: MjData) -> None:
 
 
 def mj_compareFwdInv(m: MjModel, d: MjData) -> None:
-    """Compares forward with inverse dynamics: ``data.solver_fwdinv`` takes how far constraint forces, and others, are apart."""
+    """Compares forward with inverse dynamics: writes the differences of constraint and other forces to ``data.solver_fwdinv``."""
     check(m, d)
     before, acceleration = d.qfrc_constraint.copy(), d.qacc.copy()
     applied = d.qfrc_applied + d.qfrc_actuator + _applied(m, d)
@@ -283,7 +283,7 @@ def mj_compareFwdInv(m: MjModel, d: MjData) -> None:
 
 
 def _applied(m: MjModel, d: MjData) -> _Floats:
-    """Returns what forces on bodies, ``xfrc_applied``, do to the degrees of freedom."""
+    """Returns the generalised forces of the forces on bodies, ``xfrc_applied``."""
     from .jacobians import mj_applyFT
 
     total = np.zeros(m.nv)

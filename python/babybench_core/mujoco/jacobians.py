@@ -1,4 +1,4 @@
-"""Jacobians of points and frames: ``mj_jac`` and its kin. ``jacp`` and ``jacr`` are (3, nv) or nothing."""
+"""Jacobians of points and frames: ``mj_jac`` and the like. ``jacp`` and ``jacr`` are (3, nv) or ``None``."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ def chain(m: MjModel, body: int) -> NDArray[np.intp]:
 
 
 def check(m: Any, d: Any) -> None:
-    """Refuses models and states that are not of this module, and states of other models."""
+    """Refuses models and states of other modules, and states of other models."""
     if getattr(d, "__dict__", {}).get("_sync") is not None:
         # the state of an environment: its arrays have the same names, and the environment does the rest
         if d.model is not m:
@@ -130,8 +130,8 @@ def mj_jacPointAxis(
 def mj_jacDot(m: MjModel, d: MjData, jacp: _Out, jacr: _Out, point: ArrayLike, body: int) -> None:
     """Computes the rate of the Jacobian of a point (world, m) of a body, as MuJoCo 3.3.0 does.
 
-    Only the rates of the axes are in it, ``data.cdof_dot`` at the point: the part that comes from the velocity of the
-    point itself is not.
+    It contains only the rates of the axes, ``data.cdof_dot`` at the point, not the part that comes from the velocity of the
+    point itself.
     """
     check(m, d)
     dofs = chain(m, int(body))

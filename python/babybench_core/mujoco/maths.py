@@ -78,7 +78,7 @@ def mju_cross(res: _Floats, a: ArrayLike, b: ArrayLike) -> None:
 
 
 def mju_normalize(vec: _Floats) -> float:
-    """Makes a vector a unit vector, and returns the length that it had; one without a length becomes the first axis."""
+    """Normalizes a vector and returns its earlier length; a zero vector becomes the first axis."""
     length = float(np.linalg.norm(vec))
     if length < _LEAST:
         vec[...] = 0.0
@@ -129,7 +129,7 @@ def mju_mat2Quat(quat: _Floats, mat: ArrayLike) -> None:
     """Computes the quaternion of a matrix, (9,) or (3, 3)."""
     m = _vector(mat, 9).reshape(3, 3)
     found = np.zeros(4)
-    # which of the two quaternions it is follows from this order
+    # this order decides which of the two quaternions results
     k = 0 if np.trace(m) > 0 else 1 + int(np.argmax(np.diag(m)))
     if k == 0:
         found[0] = np.sqrt(1 + np.trace(m)) / 2
@@ -168,7 +168,7 @@ def mju_derivQuat(res: _Floats, quat: ArrayLike, vel: ArrayLike) -> None:
 
 
 def mju_quatZ2Vec(quat: _Floats, vec: ArrayLike) -> None:
-    """Computes the quaternion that turns the z axis into the direction of a vector by the shortest way."""
+    """Computes the quaternion that turns the z axis into the direction of a vector by the shortest rotation."""
     direction = _vector(vec, 3).copy()
     quat[...] = [1.0, 0.0, 0.0, 0.0]
     if mju_normalize(direction) < _LEAST:
@@ -196,7 +196,7 @@ def mju_euler2Quat(quat: _Floats, euler: ArrayLike, seq: str) -> None:
 def mju_mulPose(
     posres: _Floats, quatres: _Floats, pos1: ArrayLike, quat1: ArrayLike, pos2: ArrayLike, quat2: ArrayLike
 ) -> None:
-    """Computes the second pose seen through the first."""
+    """Computes the product of two poses: the second, given in the frame of the first."""
     position, orientation = matrix(quat1) @ _vector(pos2, 3) + _vector(pos1, 3), product(quat1, quat2)
     posres[...], quatres[...] = position, orientation / np.linalg.norm(orientation)
 

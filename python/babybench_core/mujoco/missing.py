@@ -1,4 +1,4 @@
-"""Names of MuJoCo 3.3.0 that are not here, and what programs can do without them."""
+"""Names of MuJoCo 3.3.0 that are not here, and what programs can do instead."""
 
 from __future__ import annotations
 
@@ -46,11 +46,11 @@ _WHY: dict[str, str] = {
 }
 
 WHY = {name: why for why, names in _WHY.items() for name in names.split()}
-"""What to do without a name of MuJoCo's."""
+"""What to do instead, by MuJoCo's names."""
 
 
 def hint(name: str) -> str:
-    """Returns what to do without a name."""
+    """Returns what to do instead of using a name."""
     if name in WHY:
         return f"{WHY[name]}; `pip install mujoco` and `import mujoco` have everything"
     return "MuJoCo 3.3.0 does not have it either"

@@ -71,7 +71,7 @@ class FixedArray(np.ndarray[Any, np.dtype[Any]]):
         super().__setitem__(key, value)
 
     def __array_ufunc__(self, ufunc: Any, method: str, *inputs: Any, out: Any = None, **options: Any) -> Any:
-        """Computes with plain arrays, and never into one that is fixed."""
+        """Computes with plain arrays, and never writes into a fixed one."""
         if out is not None:
             for array in out:
                 if isinstance(array, FixedArray):
@@ -96,7 +96,7 @@ def _fixed(array: NDArray[Any], name: str) -> FixedArray:
 
 
 def views(memory: NDArray[np.float64], layout: list[tuple[str, list[int]]]) -> dict[str, NDArray[np.float64]]:
-    """Returns the arrays that lie one after another in a piece of memory."""
+    """Returns the arrays that lie one after another in a block of memory."""
     found, at = {}, 0
     for name, shape in layout:
         size = int(np.prod(shape))
@@ -110,7 +110,7 @@ def _contents(assets: Mapping[str, bytes | str]) -> dict[str, bytes]:
 
 
 class Fields(ABCMeta):
-    """The type of :class:`MjModel` and ``MjData``, whose ``dir`` lists the fields of MuJoCo's, as programs do that wrap them."""
+    """The type of :class:`MjModel` and ``MjData``, whose ``dir`` lists MuJoCo's fields for programs that wrap them."""
 
     def __dir__(cls) -> list[str]:
         of_instances = cls.__dict__.get("_of_instances")
@@ -119,27 +119,27 @@ class Fields(ABCMeta):
 
 @dataclass(frozen=True)
 class Source:
-    """What a model was compiled from."""
+    """The source that a model was compiled from."""
 
     text: str
     """The document."""
     folder: str
-    """Where files that it names are looked for."""
+    """The folder of the files that it names."""
     files: Mapping[str, bytes] = field(default_factory=dict)
-    """Contents by name, which replace files."""
+    """Contents of files by name, which replace those of the file system."""
 
     def compile(self) -> _native.PhysicsModel:
-        """Compiles it."""
+        """Compiles the document."""
         return _native.PhysicsModel.from_text(self.text, dict(self.files), self.folder)
 
 
 class MjModel(Named, metaclass=Fields):
     """A compiled model, under the names and in the shapes of MuJoCo's ``MjModel``.
 
-    Arrays that steps and pictures read can be written to, and the next step or picture takes what is written: masses, sizes,
+    Arrays that steps and pictures read can be written to, and the next step or picture uses the new values: masses, sizes,
     poses, friction, solver parameters, gains, equalities, colours, groups, lights (:attr:`writable` lists them). As in MuJoCo,
-    nothing that was derived from them follows, and a renderer keeps the textures that materials had when it was made. The others
-    say that they cannot be changed.
+    quantities derived from them do not change, and a renderer keeps the textures that materials had when it was made. Writing
+    into the other arrays raises an error.
     """
 
     writable: tuple[str, ...]
@@ -160,7 +160,7 @@ class MjModel(Named, metaclass=Fields):
             assets: Contents of files by name, which replace those of the file system.
 
         Raises:
-            ValueError: The document cannot be read, or has something that the engine does not know, with the place.
+            ValueError: The document cannot be read, or has something that the engine does not know; the text names the place.
         """
         path = os.fspath(filename)
         folder = os.path.dirname(path)
@@ -190,7 +190,7 @@ class MjModel(Named, metaclass=Fields):
             assets: Contents of files by name, which replace those of the file system. Folders and case of names are ignored.
 
         Raises:
-            ValueError: As :meth:`from_xml_path`; or two assets of one name.
+            ValueError: As :meth:`from_xml_path`; or two assets have one name.
         """
         files = _contents(assets or {})
         if isinstance(xml, bytes):
@@ -269,7 +269,7 @@ class MjModel(Named, metaclass=Fields):
         """
         if self._source is None:
             raise TypeError(
-                "cannot pickle this model, whose document is no UTF-8: make it with MjModel.from_xml_path where it is needed"
+                "cannot pickle this model, whose document is not UTF-8: make it with MjModel.from_xml_path where it is needed"
             )
         written = {name: np.array(array) for name, array in self._arrays.items()}
         shown = {name: np.array(self.__dict__[name]) for name in _CONSTANTS if name in self.__dict__}
@@ -309,7 +309,7 @@ class MjModel(Named, metaclass=Fields):
         return array.astype(np.float32) if name in _SINGLES else array
 
     def _derived(self, name: str) -> Any:
-        """Returns what MuJoCo has and the engine keeps in another form, or nothing."""
+        """Returns a field of MuJoCo's that the engine stores in another form, or nothing."""
         if name in DERIVED:
             return DERIVED[name](self)
         if name in NOT_OF_MODELS:
@@ -359,7 +359,7 @@ class MjModel(Named, metaclass=Fields):
 
 _OF_DOFS = frozenset({"armature", "damping", "frictionloss", "invweight0", "M0", "Madr", "jntid", "parentid"})
 _CONSTANTS = ("dof_M0", "body_subtreemass")
-"""Arrays that ``mj_setConst`` computes anew."""
+"""Arrays that ``mj_setConst`` recomputes."""
 _OF_EDGES = ("flexedge_invweight0", "flexedge_length0", "flexedge_rigid")
 
 
@@ -370,7 +370,7 @@ def _restored(
     options: dict[str, Any],
     visual: dict[str, dict[str, Any]],
 ) -> MjModel:
-    """Makes a model again from what was pickled."""
+    """Restores a pickled model."""
     model = MjModel._made(source.compile(), source)
     for name, values in written.items():
         if values.size:
@@ -386,7 +386,7 @@ def _restored(
 
 
 def is_compiled(model: Any) -> bool:
-    """Tells a model of this module from everything else, also from the model of an environment."""
+    """Returns whether an object is a model of this module; the model of an environment is not."""
     return isinstance(model, MjModel) and "_own" in model.__dict__
 
 

@@ -34,7 +34,7 @@ _EMPTY: dict[str, dict[int, str]] = {
         21: "flex_stiffness",
     },
 }
-"""The fields of flexes and plugins by type and numbers in a row: no plugins load here, and most fields of flexes are there."""
+"""Fields of flexes and plugins by type and numbers in a row. No plugins load here; most fields of flexes exist."""
 
 EMPTY: dict[str, tuple[str, int]] = {
     name: (dtype, width) for dtype, rows in _EMPTY.items() for width, names in rows.items() for name in names.split()
@@ -53,7 +53,7 @@ FLEX_SIZES = {
     "nflextexcoord": "flex_texcoord",
     "nflexvert": "flex_vertbodyid",
 }
-"""Sizes of flexes, each with an array that is as long."""
+"""Sizes of flexes, each with an array of that length."""
 
 NOT_OF_MODELS = frozenset(
     (
@@ -100,7 +100,7 @@ NOT_OF_STATES = frozenset(
 
 
 def empty(name: str, flexes: int, of: str) -> Any:
-    """Returns an empty array of a field; in a model with flexes, one that is not kept, what says so."""
+    """Returns an empty array of a field; for a field of flexes that is not kept, a placeholder if the model has flexes."""
     if flexes and "flex" in name:
         return Absent(f"{of}.{name}")
     dtype, width = EMPTY[name]
@@ -108,7 +108,7 @@ def empty(name: str, flexes: int, of: str) -> Any:
 
 
 class Absent:
-    """Stands for a field of MuJoCo's that is not kept here: programs that list all fields may hold it, and any use says so."""
+    """A placeholder for a field of MuJoCo's that is not kept here. Programs that list fields may hold it; any use is an error."""
 
     __slots__ = ("_text",)
 
@@ -154,7 +154,7 @@ NAME_ADDRESSES = tuple(f"name_{kind}adr" for kind in (*_KINDS, *_UNNAMED))
 def name_block(
     model_name: str, names: dict[str, list[str]], unnamed: dict[str, int]
 ) -> tuple[bytes, dict[str, NDArray[np.int32]]]:
-    """Returns all names, each with a zero behind it, that of the model first, and where those of each kind start.
+    """Returns all names, each with a terminating zero, that of the model first, and where those of each kind start.
 
     ``unnamed`` are numbers of elements without names, by kind.
     """

@@ -76,7 +76,7 @@ def mju_sigmoid(x: float) -> float:
 
 
 def mju_springDamper(pos0: float, vel0: float, Kp: float, Kv: float, dt: float) -> float:
-    """Returns where a damped spring is after some time, s."""
+    """Returns the position of a damped spring after some time, s."""
     det = Kv * Kv / 4 - Kp
     if det > _LEAST:
         r1, r2 = (-Kv + math.sqrt(4 * det)) / 2, (-Kv - math.sqrt(4 * det)) / 2
@@ -200,13 +200,13 @@ def mju_cholFactor(mat: _Floats, mindiag: float) -> int:
 
 
 def mju_cholSolve(res: _Floats, mat: ArrayLike, vec: ArrayLike) -> None:
-    """Divides a vector by a matrix of which the Cholesky factor is given."""
+    """Divides a vector by a matrix given by its Cholesky factor."""
     lower = np.tril(np.asarray(mat, np.float64))
     res[...] = np.linalg.solve(lower.T, np.linalg.solve(lower, np.asarray(vec, np.float64)))
 
 
 def mju_cholUpdate(mat: _Floats, x: _Floats, flg_plus: int) -> int:
-    """Adds the square of a vector to, or takes it from, a matrix of which the Cholesky factor is given; returns the rank."""
+    """Adds the square of a vector to a matrix given by its Cholesky factor, or subtracts it; returns the rank."""
     size, rank = len(mat), len(mat)
     for k in range(size):
         if x[k] == 0:
@@ -266,7 +266,7 @@ def mju_printMat(mat: ArrayLike) -> None:
 
 
 def mju_warningText(warning: int, info: int) -> str:
-    """Returns the text of a warning, of which none is given here.
+    """Refuses: there are no warnings here.
 
     Raises:
         NotImplementedError: Always.

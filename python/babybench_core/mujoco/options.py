@@ -1,4 +1,4 @@
-"""What a model has beside arrays: :class:`MjOption`, statistics and what pictures follow."""
+"""Parts of a model besides arrays: :class:`MjOption`, statistics and settings of pictures."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ class MjOption:
     def __init__(
         self, native: _native.PhysicsModel, floats: dict[str, NDArray[np.float64]], settings: dict[str, Any]
     ) -> None:
-        """Shows the options of a model."""
+        """Takes the model."""
         names = (
             "iterations",
             "ls_iterations",
@@ -50,7 +50,7 @@ class MjOption:
         raise AttributeError(MISSING.format(name=f"opt.{name}"))
 
     def __setattr__(self, name: str, value: Any) -> None:
-        """Sets an option; steps take it from now on."""
+        """Sets an option; steps use it from now on."""
         if name in self._floats:
             self._floats[name][...] = value
         elif name in self._wholes:
@@ -64,7 +64,7 @@ class MjOption:
         return sorted([*self._floats, *self._wholes])
 
     def _numbers(self) -> dict[str, Any]:
-        """Returns all options, to be pickled."""
+        """Returns all options for pickling."""
         return {**{name: np.array(array) for name, array in self._floats.items()}, **self._wholes}
 
     def _differs(self, other: MjOption) -> bool:
@@ -74,10 +74,10 @@ class MjOption:
 
 
 class Settings:
-    """Numbers of a model that do not change, or change nothing: ``model.stat``, ``model.vis`` and what is in it."""
+    """Numbers of a model that are fixed or have no effect: ``model.stat``, ``model.vis`` and its parts."""
 
     def __init__(self, of: str, values: dict[str, Any], free: tuple[str, ...] = ()) -> None:
-        """Takes values over; those of ``free`` names can be set."""
+        """Takes the values; those of ``free`` names can be set."""
         self.__dict__.update(values)
         self.__dict__.update(_of=of, _free=free)
 
@@ -90,16 +90,16 @@ class Settings:
         raise AttributeError(MISSING.format(name=f"{self.__dict__.get('_of', '')}.{name}"))
 
     def _written(self) -> dict[str, dict[str, Any]]:
-        """Returns the values that can be set, of each part of the settings."""
+        """Returns the values that can be set, for each part of the settings."""
         parts = {name: part for name, part in self.__dict__.items() if isinstance(part, Settings)}
         return {name: {free: part.__dict__[free] for free in part.__dict__["_free"]} for name, part in parts.items()}
 
 
 class Drawn(Settings):
-    """Settings that pictures follow: ``model.vis.global_``, ``map`` and ``headlight``."""
+    """Settings that affect pictures: ``model.vis.global_``, ``map`` and ``headlight``."""
 
     def __init__(self, of: str, arrays: dict[str, NDArray[Any]], values: dict[str, Any], free: tuple[str, ...]) -> None:
-        """Shows numbers that lie in the model's memory, beside plain values."""
+        """Takes arrays in the model's memory, and plain values."""
         super().__init__(of, values, free)
         self.__dict__["_drawn"] = arrays
 

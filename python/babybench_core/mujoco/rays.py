@@ -1,4 +1,4 @@
-"""Rays against geoms, and energies."""
+"""Rays against geoms."""
 
 from __future__ import annotations
 
@@ -59,12 +59,12 @@ def mj_ray(
     Args:
         m: The model.
         d: The state, with poses computed.
-        pnt: Where it starts, m.
-        vec: Its direction.
+        pnt: The start of the ray, m.
+        vec: The direction of the ray.
         geomgroup: Which of the six groups of geoms count; all by default.
         flg_static: Whether geoms that cannot move count.
         bodyexclude: A body whose geoms do not count; -1 for none.
-        geomid: Takes the geom, -1 for none.
+        geomid: Receives the id of the geom, -1 for none.
     """
     check(m, d)
     geom, distance = _cast(m, d, pnt, vec, _hidden(m, geomgroup, flg_static), bodyexclude)

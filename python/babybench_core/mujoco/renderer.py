@@ -23,8 +23,8 @@ class MjvCamera:
 
     Attributes:
         type: One of ``mjtCamera``: free, tracking or fixed.
-        fixedcamid: Camera of the model, where the type is fixed.
-        trackbodyid: Body whose centre of mass with all below it is looked at, where the type is tracking.
+        fixedcamid: Camera of the model, if the type is fixed.
+        trackbodyid: Body that a tracking camera looks at: the centre of mass of it and of all below it.
         lookat: Point that a free camera looks at, world, m.
         distance: Distance from it, m.
         azimuth: Direction of view about the vertical axis, degrees.
@@ -42,14 +42,14 @@ class MjvCamera:
 
 
 def mjv_defaultCamera(cam: MjvCamera) -> None:
-    """Makes a camera the free one that MuJoCo starts with."""
+    """Sets a camera to the free one that MuJoCo starts with."""
     new = MjvCamera()
     for name in MjvCamera.__slots__:
         setattr(cam, name, getattr(new, name))
 
 
 def mjv_defaultFreeCamera(m: MjModel, cam: MjvCamera) -> None:
-    """Makes a camera a free one that sees the whole model, from the direction of ``<visual><global azimuth elevation/>``."""
+    """Sets a camera to a free one that sees the whole model, from the direction of ``<visual><global azimuth elevation/>``."""
     mjv_defaultCamera(cam)
     view = m.vis.global_
     cam.azimuth, cam.elevation = float(view.azimuth), float(view.elevation)
@@ -67,7 +67,7 @@ def draw(
 ) -> NDArray[Any]:
     """Draws what the arrays of a state show: ``rgb``, ``depth`` (m) or ``segmentation`` (ids of geoms); size is width, height.
 
-    ``scene`` has geoms that are added.
+    ``scene`` has the added geoms.
     """
     fixed: int | None = None
     lookat = camera.lookat
@@ -86,7 +86,7 @@ def draw(
             "a camera of the type user is placed by OpenGL's own matrices: use a free, tracking or fixed one"
         )
     if not data.xquat[0].any():
-        raise ValueError("nothing is computed of this state: call mj_forward before a picture")
+        raise ValueError("this state has no computed quantities: call mj_forward before a picture")
     free = (tuple(map(float, lookat)), float(camera.distance), float(camera.azimuth), float(camera.elevation))
     markers = [] if scene is None else [marker(geom) for geom in scene.geoms[: scene.ngeom]]
     return native.draw(data._own, (fixed, free), size, what, markers)
@@ -118,7 +118,7 @@ class Renderer:
     """Draws states of a model, as MuJoCo's ``Renderer`` does, without shadows and reflections."""
 
     def __new__(cls, model: Any, height: int = 240, width: int = 320, max_geom: int = 10000) -> Any:
-        """Makes what draws an environment, if the model is that of one."""
+        """Makes a renderer of an environment if the model belongs to one."""
         of_environment = getattr(type(model), "_renderer", None)
         return object.__new__(cls) if of_environment is None else of_environment(model, int(height), int(width))
 
@@ -167,7 +167,7 @@ class Renderer:
             scene_option: Which groups of geoms, sites, tendons and skins are shown; 0 to 2 by default.
 
         Raises:
-            ValueError: The model has no such camera, or ``scene_option`` asks for decorations that are not drawn.
+            ValueError: The model has no such camera, or ``scene_option`` requests decorations that are not drawn.
         """
         check(self._model, data)
         if self._native is None:
@@ -216,7 +216,7 @@ class Renderer:
         """Draws the picture, rows from the top.
 
         Args:
-            out: Memory for it; fresh memory otherwise.
+            out: The array to write into; a new one by default.
 
         Returns:
             Red, green and blue, (height, width, 3) bytes; or distances, (height, width), m, the far plane's where there
@@ -236,7 +236,7 @@ class Renderer:
         return finished(picture, self._what, out, self._model.ngeom)
 
     def close(self) -> None:
-        """Gives the memory back; no picture can be drawn any more."""
+        """Frees the memory; no picture can be drawn afterwards."""
         self._native = self._data = None
         self._natives = {}
 

@@ -42,17 +42,17 @@ def rollout(
 ) -> tuple[_Floats, _Floats]:
     """Steps from each initial state, and returns the states and the sensors' readings after each step.
 
-    Arguments without the first axis, or with one row, count for all runs. The runs follow each other in the caller's
+    Arguments without the first axis, or with one row, apply to all runs. The runs follow each other in the caller's
     thread, whatever the number of states in `data`; their numbers do not depend on threads.
 
     Args:
         model: The model, or one for each run; all of the same sizes.
-        data: A state to work in, or several.
+        data: One or several scratch states.
         initial_state: Where runs begin, (runs, state) of ``mjSTATE_FULLPHYSICS``.
         control: What is applied in each step, (runs, steps, parts of `control_spec`).
         control_spec: Parts of a state that `control` has. Other inputs are zero, or as the model has them.
         skip_checks: Accepted as in MuJoCo; shapes are checked in any case.
-        nstep: Number of steps, if no other argument says it.
+        nstep: Number of steps, if no other argument gives it.
         initial_warmstart: Accelerations from which the solver starts, (runs, nv); zeros if they are not given.
         state: Where states are written, (runs, steps, state).
         sensordata: Where sensors' readings are written, (runs, steps, nsensordata).
@@ -95,14 +95,14 @@ def rollout(
 
 
 class Rollout:
-    """Makes runs as :func:`rollout` does, under the interface of MuJoCo's class.
+    """Makes runs as :func:`rollout` does, with the interface of MuJoCo's class.
 
     Args:
         nthread: Accepted as in MuJoCo; runs follow each other in the caller's thread.
     """
 
     def __init__(self, *, nthread: Optional[int] = None) -> None:
-        """Makes it."""
+        """Takes MuJoCo's argument."""
         self.nthread = nthread
 
     def __enter__(self) -> Rollout:
@@ -147,7 +147,7 @@ def _room(name: str, array: Optional[_Floats], shape: tuple[int, int, int]) -> _
 
 
 def _begin(model: MjModel, data: MjData, control_spec: int, start: _Floats) -> None:
-    """Puts a state at the start of a run, with inputs that `control_spec` does not have as a new state has them."""
+    """Puts a state at the start of a run; inputs that `control_spec` does not have get the values of a new state."""
     for name, bit in _INPUTS.items():
         if not control_spec & int(bit):
             getattr(data, name)[...] = 0.0

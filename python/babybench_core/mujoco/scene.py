@@ -1,4 +1,4 @@
-"""Scenes with geoms that programs add to pictures: ``MjvScene``, ``MjvGeom``, ``mjv_initGeom`` and their kin."""
+"""Scenes with geoms that programs add to pictures: ``MjvScene``, ``MjvGeom``, ``mjv_initGeom`` and the like."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ class MjvGeom(Struct):
     Attributes:
         type: Shape, one of ``mjtGeom``.
         size: Radii and half lengths, (3,), m.
-        pos: Place of the centre, (3,), m.
+        pos: Position of the centre, (3,), m.
         mat: Orientation, (3, 3).
         rgba: Colour and opacity, (4,), 0 to 1.
         label: Text beside it, which is not drawn.
@@ -168,7 +168,7 @@ _LINE_RADIUS = 0.002
 
 
 def marker(geom: MjvGeom) -> tuple[int, list[float], list[float], list[float], list[float]]:
-    """Returns shape, size, place, orientation and colour with which a geom is drawn.
+    """Returns shape, size, position, orientation and colour with which a geom is drawn.
 
     Raises:
         ValueError: Geoms of its type are not drawn.
@@ -185,6 +185,6 @@ def marker(geom: MjvGeom) -> tuple[int, list[float], list[float], list[float], l
         pos = pos + turn[:, 2] * size[2] / 2
         size = np.array([_LINE_RADIUS * size[0], size[2] / 2, 0])
     elif shape in (mjtGeom.mjGEOM_CAPSULE, mjtGeom.mjGEOM_CYLINDER):
-        # the half length is the last of the three numbers of a scene, and the second of those of a model
+        # the half length is the last of three numbers in a scene, and the second in a model
         size = np.array([size[0], size[2], 0])
     return int(shape), size.tolist(), pos.tolist(), turn.reshape(-1).tolist(), geom.rgba.astype(np.float64).tolist()

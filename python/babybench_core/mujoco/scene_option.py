@@ -22,7 +22,7 @@ _ON = (
 
 
 class MjvOption:
-    """What a picture shows. Groups of geoms, sites, tendons and skins count; other decorations of MuJoCo are not drawn.
+    """What a picture shows. Groups of geoms, sites, tendons and skins have an effect; MuJoCo's other decorations are not drawn.
 
     Attributes:
         geomgroup: Which of the six groups of geoms are shown; 0 to 2 by default.
@@ -31,10 +31,10 @@ class MjvOption:
         skingroup: The same for skins.
         jointgroup: The same for joints, which are not drawn.
         actuatorgroup: The same for actuators, which are not drawn.
-        flexgroup: The same for deformable bodies, which there are none of.
-        flags: Decorations by ``mjtVisFlag``; a picture is refused with others than the default ones.
-        label: What is labelled, of ``mjtLabel``; nothing.
-        frame: Whose frames are drawn, of ``mjtFrame``; nothing's.
+        flexgroup: The same for deformable bodies; it has no effect.
+        flags: Decorations by ``mjtVisFlag``; only the default ones are accepted.
+        label: What is labelled, of ``mjtLabel``; only none is accepted.
+        frame: Whose frames are drawn, of ``mjtFrame``; only none is accepted.
         bvh_depth: Depth of bounding volumes that are not drawn.
         flex_layer: Layer of deformable bodies that is not drawn.
     """
@@ -76,7 +76,7 @@ def default_flags() -> NDArray[np.uint8]:
 
 
 def mjv_defaultOption(opt: MjvOption) -> None:
-    """Makes options MuJoCo's default ones."""
+    """Sets options to MuJoCo's defaults."""
     opt.__dict__.update(MjvOption().__dict__)
 
 
@@ -84,7 +84,7 @@ def shown(m: MjModel, option: MjvOption) -> tuple[tuple[bool, ...], ...]:
     """Returns which geoms, sites, groups of tendons and groups of skins a picture shows.
 
     Raises:
-        ValueError: The options ask for decorations that are not drawn.
+        ValueError: The options request decorations that are not drawn.
     """
     changed = np.flatnonzero(option.flags != default_flags())
     if len(changed):

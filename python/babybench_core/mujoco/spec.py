@@ -107,11 +107,11 @@ class MjSpec(SpecTree):
             assets: Contents of other files, by name.
 
         Raises:
-            ValueError: It cannot be read, with the place.
+            ValueError: It cannot be read; the text names the place.
         """
         path = os.path.abspath(os.fspath(filename))
         files = _files(include, assets)
-        # documents of different folders are attached to each other, so paths are whole
+        # paths are absolute, because documents of different folders can be attached to each other
         return MjSpec._made(_native.MjcfDocument.from_file(path, files, ""), files, os.path.dirname(path))
 
     @staticmethod
@@ -158,7 +158,7 @@ class MjSpec(SpecTree):
 
     @property
     def parent(self) -> None:
-        """None: a document is in no other."""
+        """None: a document has no parent."""
         return None
 
     @property
@@ -214,7 +214,7 @@ class MjSpec(SpecTree):
         return [self.worldbody, *self._all("body")]
 
     def body(self, name: str) -> MjsBody | None:
-        """Returns the body with a name, or none."""
+        """Returns the body with a name, or ``None``."""
         return self.worldbody if name == "world" else self._find("body", name)
 
     def _find(self, kind: str, name: str) -> Any:
@@ -223,7 +223,7 @@ class MjSpec(SpecTree):
         return None if at is None else self._wrap(at, TYPES[kind])
 
     def detach_body(self, body: MjsBody) -> None:
-        """Takes a body out of the document, with all in it and what refers to any of it."""
+        """Removes a body from the document, with all in it and what refers to any of it."""
         body.delete()
 
     def attach(
@@ -255,7 +255,7 @@ class MjSpec(SpecTree):
         return attached
 
     def copy(self) -> MjSpec:
-        """Returns a document of its own with the same elements."""
+        """Returns a separate document with the same elements."""
         self._flush()
         return MjSpec._made(self._own.copy(), self.assets, self._folder)
 
@@ -271,18 +271,18 @@ class MjSpec(SpecTree):
         """Compiles the document, which stays as it is and can be edited further.
 
         Raises:
-            ValueError: Something in it is at fault; the line is that of :meth:`to_xml`.
+            ValueError: The document is invalid; the line is that of :meth:`to_xml`.
         """
         self._flush()
         source = Source(self._own.write(), self._folder, dict(self.assets))
         return MjModel._made(source.compile(), source)
 
     def recompile(self, m: MjModel, d: MjData) -> _Compiled:
-        """Compiles the document, and takes over the state of an earlier model for what it still has, by name.
+        """Compiles the document, and keeps the state of an earlier model for elements that both have, by name.
 
         Returns:
-            The model, and a state of it: of joints, actuators and mocap bodies with names that both models have, and the time.
-            Where neither model has a joint without a name more, those go over by their order.
+            The model, and a state with the time and the values of joints, actuators and mocap bodies whose names both models
+            have. Unnamed elements are matched by order if both models have equally many.
         """
         from .spec_state import carried
 
@@ -300,7 +300,7 @@ class MjSpec(SpecTree):
             file.write(self.to_xml())
 
     def to_zip(self, file: Any) -> None:
-        """Writes the document and the files given as ``assets`` into a ZIP archive; a path, or a file that is open."""
+        """Writes the document and the files given as ``assets`` into a ZIP archive: a path or an open file."""
         target: Any = file if isinstance(file, io.IOBase) else os.fspath(file)
         with zipfile.ZipFile(target, "w") as archive:
             archive.writestr(f"{self.modelname}.xml", self.to_xml())
@@ -349,7 +349,7 @@ def _adders() -> None:
             section, element = SECTIONS[kind]
             return self._add(self._own.section(section), element, default, values)
 
-        add.__doc__ = f"Adds an element of the kind {kind}; values are fields of it."
+        add.__doc__ = f"Adds an element of the kind {kind}; values set its fields."
         setattr(MjSpec, f"add_{kind}", add)
     for name in ("meshdir", "texturedir"):
         setattr(MjSpec, name, _setting(("compiler",), name, str, ""))

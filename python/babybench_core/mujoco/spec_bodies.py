@@ -23,7 +23,7 @@ __all__ = ["MjsBody"]
 
 
 class _Inertial(Field):
-    """A field of the inertia of a body, which counts once ``ipos`` is given, as in MuJoCo."""
+    """A field of the inertia of a body, which has an effect once ``ipos`` is given, as in MuJoCo."""
 
     def __init__(self, xml: str, initial: Any) -> None:
         super().__init__(xml)
@@ -135,12 +135,12 @@ class MjsBody(Posed):
 
     @property
     def parent(self) -> MjsBody | None:
-        """The body that it is in; none for the world."""
+        """The parent body; ``None`` for the world."""
         return None if self._is_world() else self._spec._body_around(self._at)
 
     @property
     def frame(self) -> MjsFrame | None:
-        """The frame that it is in, or none."""
+        """The frame that it is in, or ``None``."""
         return None if self._is_world() else self._spec._frame_around(self._at)
 
     def set_frame(self, frame: MjsFrame) -> None:
@@ -150,51 +150,51 @@ class MjsBody(Posed):
 
     @property
     def classname(self) -> Any:
-        """The default class of what is in the body and names none."""
+        """The default class of elements in the body that name none."""
         return self._spec.find_default(self.childclass or "main")
 
     def _new(self, element: str, default: Any, values: dict[str, Any]) -> Any:
         return self._spec._add(self._at, element, default, values)
 
     def add_body(self, default: Any = None, **values: Any) -> MjsBody:
-        """Adds a body; values are fields of it."""
+        """Adds a body; values set its fields."""
         new: MjsBody = self._new("body", None, values)
         if default is not None:
             new.childclass = default.name
         return new
 
     def add_frame(self, default: Any = None, **values: Any) -> MjsFrame:
-        """Adds a frame; values are fields of it."""
+        """Adds a frame; values set its fields."""
         new: MjsFrame = self._new("frame", None, values)
         return new
 
     def add_joint(self, default: Any = None, **values: Any) -> MjsJoint:
-        """Adds a joint; values are fields of it."""
+        """Adds a joint; values set its fields."""
         new: MjsJoint = self._new("joint", default, values)
         return new
 
     def add_freejoint(self, **values: Any) -> MjsJoint:
-        """Adds a free joint, which has no defaults; values are fields of it."""
+        """Adds a free joint, which has no defaults; values set its fields."""
         new: MjsJoint = self._new("freejoint", None, values)
         return new
 
     def add_geom(self, default: Any = None, **values: Any) -> MjsGeom:
-        """Adds a geom; values are fields of it."""
+        """Adds a geom; values set its fields."""
         new: MjsGeom = self._new("geom", default, values)
         return new
 
     def add_site(self, default: Any = None, **values: Any) -> MjsSite:
-        """Adds a site; values are fields of it."""
+        """Adds a site; values set its fields."""
         new: MjsSite = self._new("site", default, values)
         return new
 
     def add_camera(self, default: Any = None, **values: Any) -> MjsCamera:
-        """Adds a camera; values are fields of it."""
+        """Adds a camera; values set its fields."""
         new: MjsCamera = self._new("camera", default, values)
         return new
 
     def add_light(self, default: Any = None, **values: Any) -> MjsLight:
-        """Adds a light; values are fields of it."""
+        """Adds a light; values set its fields."""
         new: MjsLight = self._new("light", default, values)
         return new
 
@@ -217,7 +217,7 @@ class MjsBody(Posed):
         return found
 
     def delete(self) -> None:
-        """Takes the body out of its document, with all in it and what refers to any of it."""
+        """Removes the body from its document, with all in it and what refers to any of it."""
         self._delete(alone=False)
 
 

@@ -51,12 +51,12 @@ class Placed(Element):
 
     @property
     def parent(self) -> Any:
-        """The body that it is in; none for the world."""
+        """The body that it is in; ``None`` for the world."""
         return self._spec._body_around(self._at)
 
     @property
     def frame(self) -> Any:
-        """The frame that it is in, or none."""
+        """The frame that it is in, or ``None``."""
         return self._spec._frame_around(self._at)
 
     def set_frame(self, frame: Any) -> None:
@@ -207,7 +207,7 @@ class MjsFrame(Placed, Posed):
     quat = Quat("quat", IDENTITY)
 
     def attach_body(self, body: MjsBody, prefix: str = "", suffix: str = "") -> MjsBody:
-        """Copies a body, of another document or of this one, into the frame, with all in it and all that refers to nothing else.
+        """Copies a body, of another document or of this one, into the frame, with all in it and what refers only to that.
 
         Args:
             body: The body.
@@ -218,7 +218,7 @@ class MjsFrame(Placed, Posed):
             The copy.
 
         Raises:
-            ValueError: Names that exist already, or something that cannot be attached; the document is as before.
+            ValueError: Names that exist already, or something that cannot be attached; the document does not change.
         """
         attached: MjsBody = self._spec._attach(self._at, body, prefix, suffix)
         return attached

@@ -25,7 +25,7 @@ def number_text(value: float) -> str:
 
 
 def text_of(values: Any) -> str:
-    """Returns numbers as MJCF has them."""
+    """Returns numbers as MJCF writes them."""
     return " ".join(number_text(value) for value in np.asarray(values).ravel().tolist())
 
 
@@ -42,7 +42,7 @@ class Element:
     _arrays: dict[str, tuple[Array, Array]]
 
     def __init__(self, spec: SpecTree, at: int) -> None:
-        """Shows an element; documents make them."""
+        """Takes an element; documents make them."""
         self.__dict__.update(_spec=spec, _at=at, _arrays={})
 
     def __setattr__(self, name: str, value: Any) -> None:
@@ -87,7 +87,7 @@ class Element:
             return None
 
     def _write(self, xml: str, text: str | None) -> None:
-        """Sets an attribute, or takes it away."""
+        """Sets or removes an attribute."""
         if text is None:
             if self._given(xml) is not None:
                 self._spec._own.unset(self._at, xml)
@@ -111,7 +111,7 @@ class Element:
         self._spec._own.remove(self._at, alone)
 
     def delete(self) -> None:
-        """Takes the element out of its document. What refers to it by name stays, and is an error when it is compiled."""
+        """Removes the element from its document. References to it by name stay, and are errors when the document is compiled."""
         self._delete(alone=True)
 
 
@@ -150,14 +150,14 @@ class Field:
 
 
 class Text(Field):
-    """A name or a path; none is the empty text."""
+    """A name or a path; the empty text if there is none."""
 
 
 class Real(Field):
-    """A number; ``unset`` stands for none."""
+    """A number; ``unset`` stands for a missing one."""
 
     def __init__(self, xml: str, unset: float = 0.0) -> None:
-        """Takes the name in MJCF, and the number that is there where there is none."""
+        """Takes the name in MJCF, and the number that stands for a missing one."""
         super().__init__(xml)
         self.unset = unset
 
@@ -184,10 +184,10 @@ class Whole(Real):
 
 
 class Word(Field):
-    """A word of several, each with a number of MuJoCo's."""
+    """One of several words, each with a number of MuJoCo's."""
 
     def __init__(self, xml: str, words: Sequence[str], kind: Callable[[int], Any] = int, initial: int = 0) -> None:
-        """Takes the name in MJCF, the words by number, the enumeration, and the number where nothing is said."""
+        """Takes the name in MJCF, the words by number, the enumeration, and the number of a missing attribute."""
         super().__init__(xml)
         self.words, self.kind, self.initial = words, kind, initial
 
@@ -206,15 +206,15 @@ class Word(Field):
 
 
 class Flag(Word):
-    """Whether something is so, 0 or 1."""
+    """A flag, 0 or 1."""
 
     def __init__(self, xml: str, initial: int = 0) -> None:
-        """Takes the name in MJCF, and the number where nothing is said."""
+        """Takes the name in MJCF, and the number of a missing attribute."""
         super().__init__(xml, ("false", "true"), int, initial)
 
 
 class Tri(Field):
-    """No, yes or by other attributes: 0, 1 or 2."""
+    """No, yes, or decided by other attributes: 0, 1 or 2."""
 
     WORDS = ("false", "true", "auto")
 
@@ -232,12 +232,12 @@ class Tri(Field):
 
 
 class Numbers(Field):
-    """An array that a program may write into. ``unset``: the first number is NaN where there is none."""
+    """An array that a program may write into. ``unset``: if it is missing, its first number is NaN."""
 
     def __init__(
         self, xml: str, initial: Sequence[float], dtype: Any = np.float64, unset: bool = False, spread: bool = False
     ) -> None:
-        """Takes the name in MJCF, the numbers where there are none, their type, and whether one number stands for all."""
+        """Takes the name in MJCF, the default numbers, their type, and whether one number stands for all."""
         super().__init__(xml)
         self.initial, self.dtype, self.unset, self.spread = list(initial), dtype, unset, spread
 
@@ -291,7 +291,7 @@ class Many(Numbers):
 
 
 class Orientation:
-    """Another form of an orientation, MuJoCo's ``alt``; ``type`` says which counts."""
+    """Another form of an orientation, MuJoCo's ``alt``; ``type`` selects the form."""
 
     FORMS: tuple[tuple[str, int], ...] = (("", 0), ("axisangle", 4), ("xyaxes", 6), ("zaxis", 3), ("euler", 3))
 
@@ -304,7 +304,7 @@ class Orientation:
     _target: Callable[[], Element]
 
     def __init__(self, element: Element, target: Callable[[], Element]) -> None:
-        """Shows the orientation of an element."""
+        """Takes an element."""
         own: dict[str, Any] = {"_element": element, "_target": target, "_type": 0}
         for number, (name, size) in enumerate(self.FORMS):
             if not name:
@@ -321,7 +321,7 @@ class Orientation:
 
     @property
     def type(self) -> Any:
-        """Which form counts, of ``mjtOrientation``."""
+        """The form in use, of ``mjtOrientation``."""
         from .more_enums import mjtOrientation
 
         return mjtOrientation(self._type)

@@ -66,10 +66,10 @@ SECTIONS = {
 
 
 class MjsDefault:
-    """A default class: its fields are elements whose values others start with."""
+    """A default class: its fields are elements whose values are the defaults of others."""
 
     def __init__(self, spec: SpecTree, at: int) -> None:
-        """Shows a class; documents make them."""
+        """Takes a class; documents make them."""
         self.__dict__.update(_spec=spec, _at=at)
 
     @property

@@ -39,10 +39,10 @@ class MjsExclude(Element):
 
 
 class TextList(MutableSequence[str]):
-    """Texts of a fixed number that a program may write into."""
+    """A fixed number of texts that a program may change."""
 
     def __init__(self, values: Iterable[str], changed: Callable[[list[str]], None]) -> None:
-        """Takes the texts and what is told of changes."""
+        """Takes the texts and a function that is called on changes."""
         self._values, self._changed = list(values), changed
 
     @overload
@@ -266,7 +266,7 @@ class _Transmission(Field):
 
 
 class MjsActuator(Classed):
-    """An actuator. One of another kind than ``general`` becomes a ``general`` one where a field of these is asked for."""
+    """An actuator. One of another kind than ``general`` becomes a ``general`` one when a field of these is requested."""
 
     name = Text("name")
     gaintype = Word("gaintype", ("fixed", "affine", "muscle"), mjtGain)
@@ -320,7 +320,7 @@ class MjsActuator(Classed):
 
 
 class Remade(Element):
-    """An element whose name in MJCF follows from its fields: it is written anew where they change."""
+    """An element whose name in MJCF follows from its fields: it is rewritten when they change."""
 
     _fields: dict[str, Any]
 
@@ -362,7 +362,7 @@ class Remade(Element):
 
 
 class Kept(Field):
-    """A field of an element that is written anew."""
+    """A field of an element that is rewritten."""
 
     def __init__(self, kind: Callable[[Any], Any]) -> None:
         """Takes the type of the values."""
@@ -390,7 +390,7 @@ def floats(value: Any) -> Any:
 
 
 def given_numbers(text: str | None, count: int, initial: Any = 0.0) -> Any:
-    """Returns the numbers of an attribute, filled up."""
+    """Returns the numbers of an attribute, padded."""
     numbers = [float(word) for word in (text or "").split()]
     rest = np.broadcast_to(np.asarray(initial, np.float64), count)[len(numbers) :]
     return np.array([*numbers, *rest])

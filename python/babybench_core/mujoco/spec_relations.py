@@ -34,7 +34,7 @@ def _object(name: str) -> mjtObj:
 
 
 class MjsEquality(Remade, Classed):
-    """An equality constraint. A new one has the ``data`` of MuJoCo's: ``0 1 0 0 0 0 0 0 0 0 1``, whatever its type."""
+    """An equality constraint. A new one has MuJoCo's default ``data``: ``0 1 0 0 0 0 0 0 0 0 1``, whatever its type."""
 
     name = Text("name")
     active = Flag("active")
@@ -71,7 +71,7 @@ class MjsEquality(Remade, Classed):
     def _attributes(self, fields: dict[str, Any]) -> tuple[str, dict[str, str]]:
         if fields["type"] not in _EQUALITIES:
             raise ValueError(
-                f"equality type is {fields['type']!r}: {', '.join(kind.name for kind in _EQUALITIES)} are served"
+                f"equality type is {fields['type']!r}: {', '.join(kind.name for kind in _EQUALITIES)} are supported"
             )
         element, data = _EQUALITIES[fields["type"]], fields["data"]
         kept = {name: text for name in ("active", "solref", "solimp") if (text := self._given(name)) is not None}
@@ -152,7 +152,7 @@ class MjsTendon(Classed):
         return self._wrap(True, "joint", joint=name, coef=text_of(coef))
 
     def wrap_pulley(self, divisor: float) -> MjsWrap:
-        """Divides the length of what follows."""
+        """Divides the length of the rest of the path."""
         return self._wrap(False, "pulley", divisor=text_of(divisor))
 
 

@@ -13,12 +13,12 @@ _F32, _I32 = np.float32, np.int32
 
 
 class Section(Element):
-    """A section of a document, which is there once something in it is set."""
+    """A section of a document, which exists once something in it is set."""
 
     _path: tuple[str, ...]
 
     def __init__(self, spec: Any, *path: str) -> None:
-        """Shows the section below these names."""
+        """Takes the names of the section and of those above it."""
         super().__init__(spec, -1)
         self._path = path
 
@@ -69,7 +69,7 @@ class _Switches(Field):
         flags, bits = Section(element._spec, "option", "flag"), int(value)
         unknown = bits & ~sum(self.names)
         if unknown:
-            raise ValueError(f"{self.name}: bit {unknown} is not served")
+            raise ValueError(f"{self.name}: bit {unknown} is not supported")
         for bit, name in self.names.items():
             wanted = self.on if bits & bit else self.off
             if flags._value(name) != wanted:
@@ -169,7 +169,7 @@ class SpecOption(Section):
 
 
 class SpecStatistic(Section):
-    """Statistics of the model that the document sets in place of those that are computed; NaN where it does not."""
+    """Statistics of the model that the document sets instead of computed ones; NaN where it does not."""
 
     meaninertia = Real("meaninertia", float("nan"))
     meanmass = Real("meanmass", float("nan"))

@@ -1,4 +1,4 @@
-"""States taken over by names, when a document is compiled again."""
+"""Transfer of states by name when a document is recompiled."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ def _same(before: list[str], after: list[str]) -> list[tuple[int, int]]:
 
 
 def carried(m: MjModel, d: MjData, model: MjModel) -> MjData:
-    """Returns a state of a model with what it shares with that of another one."""
+    """Returns a state of a model with the values that it shares with another model's state."""
     data = MjData(model)
     data.time = d.time
     for old, new in _same(m._names["joint"], model._names["joint"]):

@@ -1,4 +1,4 @@
-"""The elements of an editable document: one object for each, and what they ask of the document."""
+"""The elements of an editable document: one object for each, and their operations on the document."""
 
 from __future__ import annotations
 
@@ -63,7 +63,7 @@ class SpecTree:
                 element._flush()
 
     def _change(self, element: Element, xml: str, act: Callable[[], None]) -> None:
-        """Changes an element; one of a default class leaves elements that exist as they are, as in MuJoCo."""
+        """Changes an element. A change of a default class does not affect existing elements, as in MuJoCo."""
         own, at = self._own, element._at
         parent = own.parent(at) if at >= 0 else None
         in_class = parent is not None and own.element(parent) == "default" and bool(xml)
@@ -75,7 +75,7 @@ class SpecTree:
         kind = own.element(at)
         kind = "actuator" if kind == "general" else kind
         known = [one._at for one in self._all(kind)]
-        # those of actuators are written as general ones, whose attributes alone a class gives
+        # actuators are written as general ones, because a class has only their attributes
         before = {one: _value(own, one, xml) for one in known}
         before = {one: text for one, text in before.items() if text is not None and not _given(own, one, xml)}
         act()
@@ -167,7 +167,7 @@ class SpecTree:
         return found
 
     def find_default(self, name: str) -> MjsDefault | None:
-        """Returns the default class with a name, or none."""
+        """Returns the default class with a name, or ``None``."""
         if name == "main":
             return self.default
         at = self._own.find("default", name)

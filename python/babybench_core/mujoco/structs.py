@@ -59,7 +59,7 @@ def _singles(*values: float) -> NDArray[np.float32]:
 
 
 class MjWarningStat(Struct):
-    """How often there was a warning. What MuJoCo warns of is an error here, so that there are none."""
+    """Number of warnings, which is 0: what MuJoCo warns of is an error here."""
 
     FIELDS: ClassVar = {"lastinfo": 0, "number": 0}
 
@@ -71,7 +71,7 @@ class MjTimerStat(Struct):
 
 
 class MjSolverStat(Struct):
-    """What an iteration of the solver did, which is not recorded here."""
+    """Statistics of an iteration of the solver, which are not recorded here."""
 
     FIELDS: ClassVar = {"improvement": 0.0, "gradient": 0.0, "lineslope": 0.0} | dict.fromkeys(
         ("nactive", "nchange", "neval", "nupdate"), 0
@@ -98,7 +98,7 @@ class StatList:
 
 
 class MjLROpt(Struct):
-    """Options with which ranges of lengths of muscles are found; a document has them in ``<lengthrange>``."""
+    """Options for finding the length ranges of muscles; a document has them in ``<lengthrange>``."""
 
     FIELDS: ClassVar = {
         "mode": 1,
@@ -116,7 +116,7 @@ class MjLROpt(Struct):
 
 
 def mj_defaultLROpt(opt: MjLROpt) -> None:
-    """Makes options the default ones."""
+    """Sets options to the defaults."""
     MjLROpt.__init__(opt)
 
 
@@ -136,7 +136,7 @@ class MjvPerturb(Struct):
 
 
 def mjv_defaultPerturb(pert: MjvPerturb) -> None:
-    """Makes a perturbation one of nothing."""
+    """Clears a perturbation."""
     MjvPerturb.__init__(pert)
 
 
@@ -180,7 +180,7 @@ class MjvFigure(Struct):
 
 
 def mjv_defaultFigure(fig: MjvFigure) -> None:
-    """Makes a plot an empty one."""
+    """Clears a plot."""
     MjvFigure.__init__(fig)
 
 

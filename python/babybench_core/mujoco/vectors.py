@@ -122,7 +122,7 @@ mju_addTo3, mju_subFrom3, mju_addToScl3, mju_addScl3 = mju_addTo, mju_subFrom, m
 
 
 def mju_unit4(res: _Floats) -> None:
-    """Writes the quaternion of no rotation."""
+    """Writes the identity quaternion."""
     _into(res, [1.0, 0.0, 0.0, 0.0], "mju_unit4")
 
 
@@ -150,7 +150,7 @@ mju_dot3, mju_norm3 = mju_dot, mju_norm
 
 
 def mju_dist3(pos1: ArrayLike, pos2: ArrayLike) -> float:
-    """Returns the distance of two points."""
+    """Returns the distance between two points."""
     return mju_norm(np.subtract(pos1, pos2))
 
 
@@ -200,13 +200,13 @@ def mju_transpose(res: _Floats, mat: ArrayLike) -> None:
 
 
 def mju_symmetrize(res: _Floats, mat: ArrayLike) -> None:
-    """Writes the mean of a matrix and its transposed one."""
+    """Writes the mean of a matrix and its transpose."""
     matrix = np.asarray(mat, np.float64)
     _into(res, 0.5 * (matrix + matrix.T), "mju_symmetrize")
 
 
 def mju_eye(mat: _Floats) -> None:
-    """Writes the matrix of no change."""
+    """Writes the identity matrix."""
     _into(mat, np.eye(mat.shape[0]), "mju_eye")
 
 

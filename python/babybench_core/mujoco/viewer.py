@@ -39,7 +39,7 @@ class Handle:
         print(f"mujoco.viewer: {self.url}")
 
     def is_running(self) -> bool:
-        """Tells whether the page is there: until :meth:`close`."""
+        """Returns whether the page is open, which it is until :meth:`close`."""
         return self._page is not None
 
     def sync(self) -> None:

@@ -158,7 +158,7 @@ class EngineActuation(ActuationModel):
         return np.array(self._core.proprioception()[self._core.layout["actuation"]])
 
     def cost(self) -> float:
-        """Returns the cost of the present controls, 0 to 1."""
+        """Returns the cost of the current controls, 0 to 1."""
         return float(self._core.parts.cost)
 
     def reset(self) -> None:
@@ -187,7 +187,7 @@ class SpringDamperModel(EngineActuation):
         return bounds[:, 0], bounds[:, 1]
 
     def cost(self) -> float:
-        """Returns the cost of the present controls, 0 to 1."""
+        """Returns the cost of the current controls, 0 to 1."""
         if "max_torque" not in self._replaced and self._core.whole:
             return super().cost()
         return float(abs(self.control_input**2 * self.max_torque).sum() / (self.n_actuators * self.max_torque.sum()))

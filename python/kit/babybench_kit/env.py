@@ -299,7 +299,7 @@ class BabyBenchHandRegardEnv(BabyBenchEnv):
     _PAIRS = ("right_eye_right_hand", "right_eye_left_hand", "left_eye_right_hand", "left_eye_left_hand")
 
     def _info(self) -> dict[str, Any]:
-        """Returns for how many steps each eye has had each hand before it."""
+        """Returns for how many steps each eye has had each hand in view."""
         parts = self._core.parts
         if self._core.course.moment.computed:
             parts.track()

@@ -1,4 +1,4 @@
-"""The look of a model: values that pictures follow and no step reads."""
+"""The appearance of a model: values that affect pictures but not steps."""
 
 from __future__ import annotations
 
