@@ -1,8 +1,8 @@
-//! Runs documents in separate processes, so that one that crashes MuJoCo does not end the others.
+//! Runs documents in separate processes, so that a document that crashes MuJoCo does not stop the run.
 //!
-//! A process writes the number of each document before it starts it, and the result as JSON after it. If an invalid access to memory
-//! kills the process, which safe Rust never causes, the last number is the document at which MuJoCo crashed. Another process continues
-//! after it.
+//! A process writes the number of each document before it runs it, and the result as JSON afterwards. If an invalid memory access
+//! kills the process, which safe Rust never causes, the last number is the document at which MuJoCo crashed. Another process
+//! continues with the next document.
 
 use std::io::Write;
 use std::ops::Range;

@@ -48,7 +48,12 @@ def _table(episode: Episode) -> Any:
         add(name, episode[name].astype(bool), "1", meaning)
     if "touch_ptr" in episode:
         add("touch_idx", _lists(episode, "touch_ptr", "touch_idx", np.int32), "1", "Indices in the touch observation.")
-        add("touch_val", _lists(episode, "touch_ptr", "touch_val", np.float32), "N", "Values at these indices; others are 0.")
+        add(
+            "touch_val",
+            _lists(episode, "touch_ptr", "touch_val", np.float32),
+            "N",
+            "Values at these indices; others are 0.",
+        )
     for name, unit, meaning in (
         ("geom", "1", "Ids of both geoms of each contact, pair by pair."),
         ("pos", "m", "Positions of the contacts in the world, three numbers each."),

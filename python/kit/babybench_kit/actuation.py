@@ -1,6 +1,6 @@
 """MIMo's actuation models: ``mimoActuation``.
 
-They run in the engine; these classes show what they do, and let subclasses change an action on its way.
+They run in the engine. These classes show their values, and let subclasses change an action on its way.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ class ActuationModel(Replaceable):
     """The value of ``actuation_model`` in a configuration."""
 
     def __init__(self, env: MIMoEnv, actuators: NDArray[np.int_], *args: Any) -> None:
-        """Belongs to an environment and drives some of its actuators."""
+        """Takes the environment and the ids of the actuators to drive."""
         self.env = env
         self._core = env._core
         self.actuators = actuators
@@ -80,14 +80,14 @@ class EngineActuation(ActuationModel):
     """Attributes that the engine does not use."""
 
     def __init_subclass__(cls, **arguments: Any) -> None:
-        """Refuses subclasses that change values which the engine does not read."""
+        """Refuses subclasses that change values that the engine does not read."""
         super().__init_subclass__(**arguments)
         if cls.__module__ != __name__:
             for name in sorted(cls._fixed & set(vars(cls))):
                 cls._refuse(name)
 
     def __init__(self, env: MIMoEnv, actuators: NDArray[np.int_]) -> None:
-        """Belongs to an environment and drives all of MIMo's actuators.
+        """Takes the environment and the ids of its actuators: all of MIMo's.
 
         Raises:
             ValueError: The environment has another actuation model.
@@ -132,7 +132,7 @@ class EngineActuation(ActuationModel):
         space = self.action_space
         control = np.asarray(action)
         if control.shape != space.shape:
-            # a number stands for all
+            # one number stands for all
             control = np.broadcast_to(control, space.shape)
         self.control_input = np.minimum(np.maximum(control, space.low), space.high)  # faster than clip
         if self._core.whole:
@@ -176,7 +176,7 @@ class SpringDamperModel(EngineActuation):
     _engine_name = "spring_damper"
 
     def __init__(self, env: MIMoEnv, actuators: NDArray[np.int_]) -> None:
-        """Belongs to an environment and drives some of its actuators."""
+        """Takes the environment and the ids of the actuators to drive."""
         super().__init__(env, actuators)
         self.max_torque: Array = np.asarray(env._core.blueprint.model_array("actuator_gear"))[actuators]
         self._made()
@@ -215,7 +215,7 @@ class PositionalModel(EngineActuation):
     _fixed = frozenset({*EngineActuation._fixed, "actuated_joints", "locked_joints"})
 
     def __init__(self, env: MIMoEnv, actuators: NDArray[np.int_]) -> None:
-        """Belongs to an environment and drives some of its actuators."""
+        """Takes the environment and the ids of the actuators to drive."""
         self.actuated_joints: NDArray[np.int_] = np.asarray(env._core.blueprint.model_array("actuator_trnid"))[
             actuators
         ]
@@ -295,7 +295,7 @@ class MuscleModel(MuscleParts, EngineActuation):
     _instead = "replace action or observations"
 
     def __init__(self, env: MIMoEnv, actuators: NDArray[np.int_]) -> None:
-        """Belongs to an environment and drives some of its actuators."""
+        """Takes the environment and the ids of the actuators to drive."""
         super().__init__(env, actuators)
         model = env._core.blueprint.model_array
         user = np.asarray(model("actuator_user"))[actuators]
@@ -347,4 +347,4 @@ class MuscleModel(MuscleParts, EngineActuation):
 MODELS: dict[str, type[EngineActuation]] = {
     model._engine_name: model for model in (SpringDamperModel, PositionalModel, MuscleModel)
 }
-"""The actuation models by the names that they have in configurations."""
+"""The actuation models by their names in configurations."""

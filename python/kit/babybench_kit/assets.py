@@ -30,7 +30,7 @@ def assets_path(version: int = 2) -> Path:
         folder.mkdir(parents=True, exist_ok=True)
         if os.access(folder, os.W_OK):
             return folder
-    # no home that can be written to
+    # the home folder is not writable
     user = os.getuid() if hasattr(os, "getuid") else os.environ.get("USERNAME", "user")
     return Path(tempfile.gettempdir()) / f"babybench-{user}-{_native.__version__}" / _FOLDERS[version]
 
@@ -71,7 +71,7 @@ def _write_assets(folder: Path, version: int) -> None:
         if path.is_file() and path.stat().st_size == len(content):
             continue
         path.parent.mkdir(parents=True, exist_ok=True)
-        # another process may write the same
+        # another process may write the same file
         part = path.with_name(f"{path.name}.{os.getpid()}")
         part.write_bytes(content)
         part.replace(path)

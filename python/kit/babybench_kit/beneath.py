@@ -41,10 +41,10 @@ class Beneath(Protocol):
         """Advances by one physics step."""
 
     def reset_data(self) -> None:
-        """Forgets the past."""
+        """Resets the simulation."""
 
     def written(self) -> None:
         """Records that a script has written to the state."""
 
     def show_normals(self, frames: NDArray[np.float64]) -> None:
-        """Inverts normals in the frames that a script sees, (n, 9), where feeling has inverted them at this instant."""
+        """Inverts normals in the frames that a script sees, (n, 9), where touch has inverted them at this instant."""

@@ -31,12 +31,12 @@ def build(config: Mapping[str, Any] | None = None, path_to_assets: str = "./MIMo
     """Returns the MJCF document of a configuration, which includes the files of a folder of assets.
 
     Args:
-        config: The configuration; ``behavior``, ``scene``, ``actuation_model`` and every ``act_*`` decide.
+        config: The configuration; ``behavior``, ``scene``, ``actuation_model`` and every ``act_*`` are read.
         path_to_assets: The folder that holds ``babybench/*.xml`` and ``tex/*.png``.
 
     Raises:
-        KeyError: A key that decides is missing.
-        ValueError: It has a value that does not exist.
+        KeyError: One of these keys is missing.
+        ValueError: One of them has an unknown value.
     """
     config = _checked(config)
     version = VERSIONS[config["behavior"]]

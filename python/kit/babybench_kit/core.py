@@ -50,11 +50,11 @@ class Core:
         whole: Whether the engine drives and senses all joints and actuators with MIMo's names.
         engine: The environment in Rust; ``parts`` are the parts of its reset and step.
         names: Names of all elements, by kind.
-        course: What is known of the present instant, and who may write to it.
+        course: What is known of the current instant, and who may write to it.
         observed: Number of observations so far.
-        frames: What returns the frames of all contacts, (n, 9), as touch has left them, with or without reading back what a
-            script has written; ``None`` without touch.
-        width, height: Size of pictures for people, pixels.
+        frames: A function that returns the frames of all contacts, (n, 9), as touch has left them, with or without reading back
+            what a script has written; ``None`` without touch.
+        width, height: Size of rendered pictures, pixels.
     """
 
     def __init__(self, settings: Settings, scene: Scene, width: int, height: int) -> None:
@@ -89,7 +89,7 @@ class Core:
         self.layout = self._proprioception_layout() if self.whole else {}
 
     def _is_whole(self) -> bool:
-        """Returns whether the engine drives and senses all joints and actuators with MIMo's prefixes, which others may have."""
+        """Returns whether the engine drives and senses all joints and actuators with MIMo's prefixes; other bodies may use them."""
         motors = sum(name.startswith("act:") for name in self.names["actuator"])
         torques = 3 * sum(name.startswith("proprio:") for name in self.names["sensor"])
         per_motor, seen = {"spring_damper": (1, 2), "muscle": (2, 4), "positional": (1, 1)}[
@@ -117,7 +117,7 @@ class Core:
             at += size
         return layout
 
-    # --- moving on ---
+    # --- time ---
 
     def _change(self, change: str) -> None:
         """Clears cached values after the state has changed."""
@@ -185,12 +185,12 @@ class Core:
         self.changed()
 
     def read(self, name: str) -> Array:
-        """Returns an array of the present state."""
+        """Returns an array of the current state."""
         self.pull()
         return self.engine.state_array(name)
 
     def move(self, qpos: Any) -> None:
-        """Moves the scene to other positions without computing anything from them; velocities stay."""
+        """Moves the scene to other positions without computing anything from them; velocities do not change."""
         self.parts.set_position(qpos, self.engine.state_array("qvel"))
         self.written()
         if self._live is not None:
@@ -211,7 +211,7 @@ class Core:
         """Gives the engine what a script has written into the model.
 
         Raises:
-            ValueError: Something that the engine does not take over.
+            ValueError: The engine cannot use a value.
         """
         if self._watched is not None:
             self._watched.check()
@@ -219,7 +219,7 @@ class Core:
     # --- senses ---
 
     def observe(self) -> None:
-        """Senses the present state, if that has not been done."""
+        """Senses the current state, if that has not been done."""
         self.pull()
         if not self.course.moment.sensed:
             self.parts.observe()
@@ -248,7 +248,7 @@ class Core:
         return self._contacts
 
     def show_normals(self, frames: Array) -> None:
-        """Inverts normals in the frames that a script sees, (n, 9), where feeling has inverted them at this instant."""
+        """Inverts normals in the frames that a script sees, (n, 9), where touch has inverted them at this instant."""
         if self.frames is None or not self.course.moment.felt:
             return
         known = self.frames(False)
@@ -257,14 +257,14 @@ class Core:
 
     @property
     def poses(self) -> Poses:
-        """Returns the poses of the present state."""
+        """Returns the poses of the current state."""
         if self._poses is None:
             self._poses = Poses(self.engine)
         return self._poses
 
     @property
     def present(self) -> Poses:
-        """Returns the poses of the present state, with what a script has written and computed."""
+        """Returns the poses of the current state, with what a script has written and computed."""
         self.pull()
         return self.poses
 

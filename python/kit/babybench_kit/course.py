@@ -1,8 +1,8 @@
-"""The progress of an environment between two changes of its state: everything that is not a number of the simulation.
+"""The progress of an environment between two changes of its state: everything besides the numbers of the simulation.
 
-A :class:`Course` has three parts, each of which changes in the ways of its table and in no other; ``-`` is refused.
+A :class:`Course` has three parts, each of which changes only as its table says; ``-`` is refused.
 
-What is known of the present instant, :class:`Moment`:
+What is known of the current instant, :class:`Moment`:
 
 | at               | clear     | compute    | write      | sense            | feel           |
 |------------------|-----------|------------|------------|------------------|----------------|
@@ -41,14 +41,14 @@ class Moment(Enum):
     """The progress of the current instant: whether its forces and contacts are known, sensed, and felt by the skin."""
 
     CLEARED = (False, False, False)
-    """The past is forgotten, and nothing computed: after ``mujoco.mj_resetData``."""
+    """The simulation was reset, and nothing is computed: after ``mujoco.mj_resetData``."""
     CLEARED_SENSED = (False, True, False)
     CLEARED_FELT = (False, True, True)
     COMPUTED = (True, False, False)
     """After a physics step, or at positions that were set."""
     SENSED = (True, True, False)
     FELT = (True, True, True)
-    """Touch was observed. The kit's own inverts normals then, so what is felt again is something else."""
+    """Touch was observed. The kit's own inverts normals then, so feeling again gives other forces."""
 
     def __init__(self, computed: bool, sensed: bool, felt: bool) -> None:
         """Names the three parts."""
@@ -59,17 +59,17 @@ class Copy(Enum):
     """The instant that the scripts' copy of the state shows."""
 
     LATE = "late"
-    """An earlier instant; also while there is no copy, because no script has requested one."""
+    """An earlier instant, or none if no script has requested a copy."""
     POSES = "poses"
     """The current instant, except for contacts and constraints."""
     LATE_WHOLE = "late, then whole"
     """An earlier instant; contacts were requested once, so the next instant will have them."""
     WHOLE = "whole"
-    """The present, contacts and constraints included."""
+    """The current instant, contacts and constraints included."""
 
     @property
     def present(self) -> bool:
-        """Whether it shows the present."""
+        """Whether it shows the current instant."""
         return self is Copy.POSES or self is Copy.WHOLE
 
     @property
@@ -79,7 +79,7 @@ class Copy(Enum):
 
 
 class Turn(Enum):
-    """The part that currently runs."""
+    """The code that currently runs."""
 
     SCRIPT = "script"
     """Code that may hold the copy and write to it."""
@@ -88,10 +88,10 @@ class Turn(Enum):
 
 
 class Share(Enum):
-    """The share of an environment or of a sense that is a script's own: fixed when it is made."""
+    """How much of an environment or of a sense a script has replaced: fixed when it is made."""
 
     NOTHING = "nothing"
-    """The engine does it all."""
+    """The engine does everything."""
     STEP = "step"
     """Methods between an action and its observation."""
     SENSES = "senses"
@@ -120,7 +120,7 @@ _TABLES: dict[str, Mapping[str, Mapping[Any, Any]]] = {"moment": _MOMENTS, "copy
 _PARTS = {change: part for part, table in _TABLES.items() for change in table}
 """The part of a course that each change concerns."""
 _FOLLOWING: dict[tuple[str, str], Any] = {}
-"""What follows a change, by its name and that of the present member: members as keys would be hashed in Python."""
+"""The next member by the names of the change and of the current member: members as keys would be hashed in Python."""
 for _table in _TABLES.values():
     _FOLLOWING.update(
         {(change, present.name): following for change, pairs in _table.items() for present, following in pairs.items()}
@@ -131,7 +131,7 @@ class Course:
     """The progress of an environment.
 
     Attributes:
-        moment: What is known of the present instant.
+        moment: What is known of the current instant.
         copy: What the copy that scripts hold shows of it.
         turn: Who may write to that copy.
     """

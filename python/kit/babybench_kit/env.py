@@ -52,7 +52,7 @@ class BabyBenchEnv(MIMoEnv):
         proprio_params, vision_params, vestibular_params, touch_params: Parameters of the senses; ``None`` turns one off. A
             configuration replaces them.
         actuation_model: The class of the actuation model; a configuration replaces it.
-        width, height: Size of pictures for people, pixels.
+        width, height: Size of rendered pictures, pixels.
         config: The configuration of BabyBench.
         training: Whether episodes are logged in ``save_dir`` and counted one by one.
 
@@ -156,7 +156,7 @@ class BabyBenchEnv(MIMoEnv):
         """Applies an action, (n,), for ``frame_skip`` physics steps.
 
         Returns:
-            Observation, 0, False, False (a wrapper counts steps), and information: what the behavior counts, and ``steps``,
+            Observation, 0, False, False (a wrapper counts steps), and information: the counters of the behavior, and ``steps``,
             one less than the steps done.
         """
         observation = self._advance(action)
@@ -213,7 +213,7 @@ class BabyBenchEnv(MIMoEnv):
 
 
 def _configure(senses: dict[str, Any], config: Mapping[str, Any]) -> None:
-    """Changes the parameters of the senses to what a configuration says; keys without a value leave them."""
+    """Sets the parameters of the senses from a configuration; keys without a value do not change them."""
     if config.get("vision_active") is False:
         senses["vision_params"] = None
     elif config.get("vision_resolution") is not None:
@@ -241,7 +241,7 @@ def _configure(senses: dict[str, Any], config: Mapping[str, Any]) -> None:
 
 
 class BabyBenchSelfTouchEnv(BabyBenchEnv):
-    """MIMo v1 learns to touch itself.
+    """MIMo v1 learns to touch himself.
 
     Attributes:
         right_hand_geoms, left_hand_geoms: Ids of the geoms of the palms.
@@ -293,7 +293,7 @@ class BabyBenchSelfTouchEnv(BabyBenchEnv):
 
 
 class BabyBenchHandRegardEnv(BabyBenchEnv):
-    """MIMo v2 learns to look at its hands."""
+    """MIMo v2 learns to look at his hands."""
 
     _engine_behavior = "hand_regard"
     _PAIRS = ("right_eye_right_hand", "right_eye_left_hand", "left_eye_right_hand", "left_eye_left_hand")

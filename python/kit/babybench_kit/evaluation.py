@@ -12,18 +12,18 @@ from .pictures import evaluation_img, evaluation_video
 Record = dict[str, Any]
 
 _MOST = 10_001
-"""Records that count, with the one that does not."""
+"""Number of records that count, plus the one that does not."""
 
 _PARTS_OF_BODY = 34
-"""Parts of MIMo v1 that a hand is scored for."""
+"""Number of parts of MIMo v1 that a hand is scored for."""
 
 
 class Eval:
-    """Follows the evaluation of a policy, and writes what is submitted.
+    """Follows the evaluation of a policy, and writes the files to submit.
 
     Args:
         env: The environment.
-        duration: Steps of an episode; for the caller.
+        duration: Steps of an episode; only the caller uses it.
         render: Whether each episode becomes a video.
         save_dir: The folder of the run.
     """
@@ -31,7 +31,7 @@ class Eval:
     _panel = "side2"
 
     def __init__(self, env: Any, duration: int | None = None, render: bool = False, save_dir: str = "results") -> None:
-        """Evaluates in an environment."""
+        """Takes the environment."""
         self._env, self._duration, self._render, self._save_dir = env, duration, render, save_dir
         self._images: list[Any] = []
         self._init_track()
@@ -45,7 +45,7 @@ class Eval:
         self._trajectories: dict[str, list[Any]] = {"qpos": [], "info": []}
 
     def _eval_logs(self, logs: Sequence[Record]) -> float | None:
-        """Returns the score of a training log; none without a behavior."""
+        """Returns the score of a training log; ``None`` without a behavior."""
         return None
 
     def eval_logs(self) -> None:
@@ -104,7 +104,7 @@ class EvalSelfTouch(Eval):
 
 
 class EvalHandRegard(Eval):
-    """Evaluates hand regard: for how much of the time each eye had each hand before it."""
+    """Evaluates hand regard: for how much of the time each eye had each hand in view."""
 
     _panel = "binocular"
     _PAIRS = ("right_eye_right_hand", "left_eye_right_hand", "right_eye_left_hand", "left_eye_left_hand")

@@ -9,7 +9,7 @@ from xml.etree import ElementTree
 _FILES = ("file", "fileright", "fileleft", "fileup", "filedown", "filefront", "fileback")
 _FOLDERS = {"texture": "texturedir", "mesh": "meshdir", "hfield": "meshdir", "skin": "meshdir"}
 MAX_DEPTH = 50
-"""Includes that may be nested."""
+"""Largest depth of nested includes."""
 
 
 def _found(file: str, folder: Path, beside: Path) -> Path:

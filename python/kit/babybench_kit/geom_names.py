@@ -1,4 +1,4 @@
-"""Names of geoms: all of MIMo 3's have one."""
+"""Names of geoms: all geoms of MIMo 3 have one."""
 
 from __future__ import annotations
 

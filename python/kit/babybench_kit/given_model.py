@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from .actuation import ActuationModel
 
 _COPIED = {"tex_data"}
-"""Arrays that pictures keep in another form."""
+"""Arrays that the renderer stores in another form."""
 
 
 @dataclass
@@ -51,10 +51,10 @@ def check_state(data: Any, model: Any = None) -> None:
     """Raises an error unless this is a ``babybench.mujoco`` state of the given model.
 
     Raises:
-        TypeError, ValueError: It is one of these.
+        TypeError, ValueError: It is not.
     """
     if given_mujoco.is_state(data) and (model is None or given_mujoco.is_model(model)):
-        return  # the sizes are compared when it is taken over
+        return  # the sizes are compared when it is adopted
     if not isinstance(data, MjData):
         raise TypeError(f"env.data must be a state of babybench.mujoco, MjData(model), not {type(data).__name__}")
     if model is not None and data.model is not model:
@@ -65,7 +65,7 @@ def given_scene(model: Any) -> Scene:
     """Returns the scene that a model was compiled from.
 
     Raises:
-        TypeError: It is no model of ``babybench.mujoco``, or was not compiled from a document there.
+        TypeError: It is not a model of ``babybench.mujoco``, or was not compiled from a document there.
     """
     if not isinstance(model, MjModel):
         raise TypeError(
@@ -79,7 +79,7 @@ def given_scene(model: Any) -> Scene:
 
 
 def take_model(core: Core, model: Any, path: str) -> None:
-    """Gives an environment what a program has written into a model since it was compiled.
+    """Passes to an environment what a program has written into a model since it was compiled.
 
     Raises:
         AttributeError, ValueError: The environment cannot use a value.
@@ -112,7 +112,7 @@ def _write(model: Any, name: str, now: NDArray[Any], written: NDArray[np.bool_])
 
 
 def take_state(core: Core, data: Any) -> None:
-    """Puts an environment where a state is, and computes everything there.
+    """Moves an environment to a state, and computes everything there.
 
     Raises:
         ValueError: The state is that of a model with other joints or actuators.
@@ -175,7 +175,7 @@ class TakesModels:
     def model(self, model: Any) -> None:
         """Takes a model that a program has compiled, and begins at its ``qpos0``: ``env.data`` can be assigned after it."""
         given = Given(model)
-        # the program's own model has the age that it was given
+        # the program's model keeps its own age
         mine = given_mujoco.is_model(model)
         scene = known_scene(self.fullpath, self._any_scene) if mine else given_scene(model)
         core = self._compile(scene, self._actuation, self._config, None)

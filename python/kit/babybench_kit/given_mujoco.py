@@ -1,7 +1,7 @@
-"""MuJoCo's own models in the place of ``env.model``: those that a program has compiled from the environment's document.
+"""MuJoCo's own models as ``env.model``, which a program has compiled from the environment's document.
 
-MuJoCo does not keep the document of a model, so one of another document is refused. What a program has written into the model
-since it was compiled goes to the engine, or is refused by name.
+MuJoCo does not keep the document of a model, so models of other documents are refused. What a program has written into the
+model since it was compiled goes to the engine, or is refused by name.
 """
 
 from __future__ import annotations
@@ -54,7 +54,7 @@ _PARTS = (
     "qpos",
 )
 _DRAWN = frozenset({"offwidth", "offheight"})
-"""The size of MuJoCo's own pictures, which programs set and the environment has from ``width`` and ``height``."""
+"""The size of MuJoCo's own pictures, which programs set; the environment takes it from ``width`` and ``height``."""
 _FOLLOWED = frozenset(
     {
         *(("global_", "fovy"), ("map", "znear"), ("map", "zfar"), ("headlight", "active")),
@@ -62,7 +62,7 @@ _FOLLOWED = frozenset(
     }
 )
 _ALIKE = 1e-9
-"""Numbers that are this close, relative to their size, or to 1, are those of the document."""
+"""Numbers that differ by at most this, relative to their size or to 1, are those of the document."""
 
 OTHER = (
     "env.model is a model of MuJoCo that was not compiled from {path}: it has {what}. MuJoCo does not keep the document of a "
@@ -75,13 +75,13 @@ FIXED = (
 
 
 def is_model(model: Any) -> bool:
-    """Tells whether this is a model of MuJoCo's own."""
+    """Returns whether this is a model of MuJoCo's own."""
     mujoco = mujoco_module()
     return mujoco is not None and isinstance(model, mujoco.MjModel)
 
 
 def is_state(data: Any) -> bool:
-    """Tells whether this is a state of MuJoCo's own."""
+    """Returns whether this is a state of MuJoCo's own."""
     mujoco = mujoco_module()
     return mujoco is not None and isinstance(data, mujoco.MjData)
 
@@ -94,7 +94,7 @@ def state(model: Any) -> Any:
 
 
 def adopt(core: Core, model: Any, path: str) -> None:
-    """Shows a model as that of an environment, and gives the engine what a program has written into it.
+    """Uses a model as that of an environment, and passes to the engine what a program has written into it.
 
     Raises:
         ValueError: It has other elements than the document, or numbers that a running environment cannot take over.
@@ -112,7 +112,7 @@ def adopt(core: Core, model: Any, path: str) -> None:
     if fixed:
         known = ", ".join([*sorted(free), *sorted(f"vis.{part}.{name}" for part, name in _FOLLOWED)])
         raise ValueError(FIXED.format(names=", ".join(fixed), path=path, known=known))
-    # watched from the document's numbers on, so that what was written counts as a change
+    # compared with the document's numbers, so that earlier writes count as changes
     for name in written:
         getattr(model, name)[...] = getattr(fresh, name)
     for name in options:
@@ -130,7 +130,7 @@ def adopt(core: Core, model: Any, path: str) -> None:
 
 
 def _compare_names(model: Any, fresh: Any, path: str) -> None:
-    """Raises an error where a model has other elements than that of the document."""
+    """Raises an error if a model has other elements than that of the document."""
     for size in _SIZES:
         now, first = int(getattr(model, size)), int(getattr(fresh, size))
         if now != first:
@@ -148,7 +148,7 @@ def _count(model: Any, kind: str) -> int:
 
 
 def _same(now: Any, first: Any) -> bool:
-    """Tells whether numbers are the same, but for the last bits."""
+    """Returns whether numbers are the same except for the last bits."""
     one, other = np.asarray(now), np.asarray(first)
     if one.shape != other.shape:
         return False
@@ -158,7 +158,7 @@ def _same(now: Any, first: Any) -> bool:
 
 
 def _differs(model: Any, fresh: Any, name: str) -> bool:
-    """Tells whether an array of the model is another one than the document's."""
+    """Returns whether an array of the model differs from the document's."""
     if name.split("_")[0] not in _PARTS and name != "qpos0":
         return False
     now = getattr(model, name)
@@ -172,7 +172,7 @@ def _settings(of: Any) -> list[tuple[str, Any]]:
 
 
 def _visual(model: Any, fresh: Any) -> tuple[list[tuple[str, str, Any]], list[str]]:
-    """Returns what a program has written into ``vis``: what pictures follow, and the names of the rest."""
+    """Returns what a program has written into ``vis``: the values that affect pictures, and the names of the rest."""
     follows, rest = [], []
     for part in ("global_", "map", "headlight", "quality", "rgba", "scale"):
         for name, value in _settings(getattr(model.vis, part)):
@@ -186,7 +186,7 @@ def _visual(model: Any, fresh: Any) -> tuple[list[tuple[str, str, Any]], list[st
 
 
 def _followed(part: str, name: str) -> bool:
-    """Tells whether pictures follow a setting: numbers, and the colours of the headlight."""
+    """Returns whether a setting affects pictures: numbers, and the colours of the headlight."""
     return (part, name) in _FOLLOWED
 
 

@@ -19,7 +19,7 @@ class GoalEnv(SensingEnv):
         raise NotImplementedError
 
     def is_failure(self, achieved_goal: Any, desired_goal: Any) -> bool:
-        """Returns whether a goal cannot be reached any more."""
+        """Returns whether a goal can no longer be reached."""
         raise NotImplementedError
 
     def is_truncated(self) -> bool:

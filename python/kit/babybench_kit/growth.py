@@ -37,7 +37,7 @@ def grown(path: Path, age: float) -> ElementTree.Element:
     """Returns a document in which MIMo has an age, months, with everything that it includes.
 
     Raises:
-        ValueError: An age at which MIMo has no size, or a document with bodies that are not written out.
+        ValueError: MIMo has no size at this age, or the document has bodies that are not written out.
     """
     path = path.resolve()
     scene = read_any_scene(path)
@@ -115,7 +115,7 @@ def adjust_mimo_to_age(
 
     Raises:
         FileNotFoundError: There is no such scene.
-        ValueError: An age at which MIMo has no size.
+        ValueError: MIMo has no size at this age.
         NotImplementedError: ``custom`` is given.
     """
     if custom is not None:
@@ -136,7 +136,7 @@ def delete_growth_scene(growth_path_scene: str | os.PathLike[str]) -> None:
     """Deletes a scene that :func:`adjust_mimo_to_age` has written.
 
     Raises:
-        ValueError: Another file.
+        ValueError: It did not write this file.
     """
     path = Path(growth_path_scene)
     if _MARK not in path.name:

@@ -20,7 +20,7 @@ class Live:
     data: Any
 
     def __init__(self, core: Beneath) -> None:
-        """Belongs to an environment."""
+        """Takes the environment."""
         self.core, self.course = core, core.course
         self.idle = 0
 
@@ -109,7 +109,7 @@ class ViewLive(Live):
             self.refresh()
 
     def reset(self) -> None:
-        """Forgets the past: ``mujoco.mj_resetData``."""
+        """Resets the simulation: ``mujoco.mj_resetData``."""
         self.core.reset_data()
         self.refresh()
 

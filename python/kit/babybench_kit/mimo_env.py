@@ -1,7 +1,7 @@
 """The base of MIMo's environments: ``mimoEnv.envs.mimo_env``.
 
-They go through a reset and a step as the kit's do, method by method, so that subclasses can replace any of them; the
-work behind each method is the engine's.
+Resets and steps call the same methods as the kit's, so that subclasses can replace any of them. The engine does the work of
+each method.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ from .settings import engine_settings
 Array = NDArray[np.float64]
 
 DEFAULT_SIZE = 480
-"""Width and height of pictures for people, pixels."""
+"""Width and height of rendered pictures, pixels."""
 
 EMOTES = {"default": "tex_head_default"} | {
     emotion: f"tex_head_{emotion}" for emotion in ("happy", "sad", "surprised", "angry", "disgusted", "scared")
@@ -63,18 +63,18 @@ class MIMoEnv(TakesModels, GoalEnv):
         render_mode: ``rgb_array`` or ``depth_array``, for :meth:`render`.
         camera_id: The camera of :meth:`render`, by id.
         camera_name: The camera of :meth:`render`, by name.
-        width, height: Size of pictures for people, pixels.
+        width, height: Size of rendered pictures, pixels.
         default_camera_config: The free camera of :meth:`render` in scenes without a camera for the room: ``lookat``,
             ``distance``, ``azimuth``, ``elevation``.
         proprio_params, touch_params, vision_params, vestibular_params: Parameters of the senses; ``None`` turns one off.
         actuation_model: The class of the actuation model.
         goals_in_observation: Whether ``achieved_goal`` and ``desired_goal`` are part of the observation.
         done_active: Whether success and failure end an episode.
-        config: A configuration of BabyBench, whose keys hold where no argument says otherwise.
+        config: A configuration of BabyBench, whose keys apply where no argument overrides them.
         age: MIMo's age, months; ``None`` for the proportions of the scene.
 
     Attributes:
-        model, data: MuJoCo's ``MjModel`` and ``MjData`` of the present state where MuJoCo is installed, or what stands for them.
+        model, data: MuJoCo's ``MjModel`` and ``MjData`` of the current state where MuJoCo is installed, or their stand-ins.
             ``qpos``, ``qvel``, ``ctrl`` and ``qfrc_applied`` of ``data`` can be written to. Both can be replaced by a model that
             :mod:`babybench.mujoco` has compiled and a state of it, above all in :meth:`_initialize_simulation`.
         init_qpos, init_qvel: The state in which episodes start.
@@ -86,22 +86,22 @@ class MIMoEnv(TakesModels, GoalEnv):
     metadata: dict[str, Any] = {"render_modes": ["human", "rgb_array", "depth_array"], "render_fps": 200}  # noqa: RUF012
     _engine_behavior = "none"
     _any_scene = True
-    """Whether it takes scenes that BabyBench's ``build_xml`` did not write."""
+    """Whether it accepts scenes that BabyBench's ``build_xml`` did not write."""
     _forwards_attributes = True
     _updates_first = False
-    """Whether actuators are updated before the first physics step of a step, too: MIMo 3."""
+    """Whether actuators are updated before the first physics step of a step, too, as in MIMo 3."""
     init_qpos: Array
     init_qvel: Array
     _ezpickle_args: tuple[Any, ...]
     _ezpickle_kwargs: dict[str, Any]
 
     def __init_subclass__(cls, **arguments: Any) -> None:
-        """Refuses subclasses that replace methods which are never called."""
+        """Refuses subclasses that replace methods that are never called."""
         super().__init_subclass__(**arguments)
         refuse_uncalled(cls, _UNCALLED, "replace _single_mujoco_step, render or _reset_simulation")
 
     def __new__(cls, *args: Any, **kwargs: Any) -> MIMoEnv:
-        """Remembers the arguments, for copies and pickles."""
+        """Stores the arguments, for copies and pickles."""
         env = super().__new__(cls)
         env._ezpickle_args, env._ezpickle_kwargs = args, kwargs
         return env
@@ -251,7 +251,7 @@ class MIMoEnv(TakesModels, GoalEnv):
         assert emotion in self.facial_expressions, f"{emotion} is not a valid facial expression!"
         self._core.pull()
         self._core.engine.swap_facial_expression(emotion)
-        self._core.changed()  # poses and contacts are those of the state now, no longer of the last step's start
+        self._core.changed()  # poses and contacts are now those of the state, no longer of the last step's start
 
     # --- construction ---
 
@@ -299,7 +299,7 @@ class MIMoEnv(TakesModels, GoalEnv):
         self.actuation_model.action(self._delayed_action(action))
 
     def _delayed_action(self, action: ArrayLike) -> ArrayLike:
-        """Returns the action that arrives when another one is given: the same one, except in MIMo 3."""
+        """Returns the action that takes effect when one is given: the same one, except with MIMo 3's delay."""
         return action
 
     def _single_mujoco_step(self) -> None:
@@ -323,7 +323,7 @@ class MIMoEnv(TakesModels, GoalEnv):
         self._core.forward(qpos, qvel)
 
     def _reset_simulation(self) -> None:
-        """Forgets the past, puts the actuators to rest, and samples a goal."""
+        """Resets the simulation, puts the actuators to rest, and samples a goal."""
         self._core.reset_data()
         self.actuation_model.reset()
         self.goal = self.sample_goal()
@@ -362,12 +362,12 @@ class MIMoEnv(TakesModels, GoalEnv):
         return {}
 
     def _advance(self, action: ArrayLike) -> Observation:
-        """Applies an action, and returns what is sensed then."""
+        """Applies an action, and returns the observation after it."""
         core = self._core
         core.pull()
         if self._share is not Share.NOTHING:
             return self._acted(action)
-        # as no subclass takes part, no script writes to the state before the observation
+        # without a subclass's methods, no script writes to the state before the observation
         core.course.change("begin")
         try:
             return self._acted(action)
@@ -383,7 +383,7 @@ class MIMoEnv(TakesModels, GoalEnv):
         """Applies an action, (n,), for ``frame_skip`` physics steps.
 
         Returns:
-            Observation, reward, whether the episode has ended, whether it was cut, and information.
+            Observation, reward, whether the episode has ended, whether it was truncated, and information.
         """
         observation = self._advance(action)
         self._obs_callback()
@@ -395,11 +395,11 @@ class MIMoEnv(TakesModels, GoalEnv):
         return observation, self.compute_reward(achieved, self.goal, info), terminated, truncated, info
 
     def _is_done(self, achieved_goal: Any, desired_goal: Any, info: dict[str, Any]) -> tuple[bool, bool]:
-        """Returns whether the episode has ended, and whether it was cut."""
+        """Returns whether the episode has ended, and whether it was truncated."""
         return bool(self.done_active and (info["is_success"] or info["is_failure"])), self.is_truncated()
 
     def render(self) -> NDArray[Any] | None:  # type: ignore[override,unused-ignore]
-        """Draws the scene for people, in the mode and from the camera of the constructor."""
+        """Renders the scene in the mode and from the camera of the constructor."""
         return self.mujoco_renderer.render(self.render_mode, self.camera_id, self.camera_name)
 
     def close(self) -> None:
@@ -451,6 +451,6 @@ _REMADE = frozenset(
         "run_folder",
     }
 )
-"""Attributes that a copy makes anew."""
+"""Attributes that a copy makes again."""
 _ORIGINAL = {**vars(SensingEnv), **vars(GoalEnv), **vars(MIMoEnv)}
 """Methods as this module and :mod:`.sensing` define them."""

@@ -30,7 +30,7 @@ _ALLOWED = frozenset({"eq_active0", "eq_data", "tex_data"})
 
 
 def mujoco_module() -> ModuleType | None:
-    """Returns MuJoCo's bindings if they are installed; ``BABYBENCH_MUJOCO=off`` does without."""
+    """Returns MuJoCo's bindings if they are installed, unless ``BABYBENCH_MUJOCO=off``."""
     if os.environ.get(MUJOCO) == "off":
         return None
     try:
@@ -86,7 +86,7 @@ def compiled(mujoco: ModuleType, core: Beneath) -> Any:
 
 
 def mujoco_model(mujoco: ModuleType, core: Beneath, model: Any) -> Any:
-    """Gives a compiled model of MuJoCo what an environment changes in it."""
+    """Applies an environment's changes to a compiled model of MuJoCo."""
     # the defaults of MuJoCo 3.3.0, whose contacts the engine has
     for name in ("mjDSBL_MULTICCD", "mjDSBL_ISLAND"):
         model.opt.disableflags |= int(getattr(mujoco.mjtDisableBit, name, 0))
@@ -96,7 +96,7 @@ def mujoco_model(mujoco: ModuleType, core: Beneath, model: Any) -> Any:
         model.body_pos[1] = core.place
         model.qpos0[:3] = model.qpos_spring[:3] = core.place
     if core.config["actuation_model"] == "muscle":
-        # muscles take the place of the springs in the joints
+        # muscles replace the springs in the joints
         joints = core.mimo_joints
         model.jnt_stiffness[joints] = 0
         model.dof_damping[model.jnt_dofadr[joints]] /= 20
@@ -117,10 +117,10 @@ def view_model(core: Beneath) -> ModelView:
 
 
 class Watched:
-    """A model that a script has: what it writes goes to the engine before the next step, or is refused."""
+    """A model that a script holds: what it writes goes to the engine before the next step, or is refused."""
 
     def __init__(self, core: Beneath, model: Any) -> None:
-        """Remembers what the model is."""
+        """Stores the model's current contents."""
         self.core = core
         self.model = model
         self.locks = self._locks()
@@ -142,7 +142,7 @@ class Watched:
         self.fixed_options = {} if isinstance(model, ModelView) else self._other_options()
 
     def _fix(self) -> dict[str, NDArray[Any]]:
-        """Makes MuJoCo's other arrays read-only, and remembers them, because there are other ways to write to them."""
+        """Makes MuJoCo's other arrays read-only, and stores their contents, because there are other ways to write to them."""
         fixed = {}
         for name in dir(self.model):
             free = name in _ALLOWED or name in LOOKS or name in _native.CHANGEABLE
@@ -185,7 +185,7 @@ class Watched:
             if is_look(name):
                 continue
             whole = engine.model_array(name)
-            # the last bits of what is left alone may be others in MuJoCo
+            # unchanged numbers may differ in their last bits in MuJoCo
             written = now != self.seen[number]
             if name == "actuator_gear":
                 if written[:, 1:].any():
@@ -200,7 +200,7 @@ class Watched:
         self.core.timestep = engine.dt / self.core.config["frame_skip"]
 
     def _paint(self, changed: list[int], visual: tuple[float, ...]) -> None:
-        """Passes a script's changes to the look of the model to the engine."""
+        """Passes a script's changes to the model's appearance to the engine."""
         numbers = [number for number in changed if is_look(self.names[number])]
         looks: dict[str, Any] = {}
         if visual != self.visual:
@@ -218,7 +218,7 @@ class Watched:
         self.visual = visual
 
     def show(self, changes: dict[str, NDArray[Any]]) -> None:
-        """Shows what the engine has changed by itself."""
+        """Copies to the model what the engine has changed by itself."""
         for name, array in changes.items():
             _put(self.model, name, np.asarray(array))
         self.watch.changed(self.changeable)
@@ -254,7 +254,7 @@ class Watched:
         self.locks = now
 
     def _lock(self, number: int, before: tuple[int, list[float]], after: tuple[int, list[float]]) -> None:
-        """Moves the lock of a joint; whether constraints hold is set for all of them together."""
+        """Moves the lock of a joint; whether constraints are active is set for all of them together."""
         joint, (active, data) = self.model.equality(number).name, after
         if data == before[1] and not active:
             return

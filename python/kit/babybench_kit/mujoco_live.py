@@ -1,7 +1,7 @@
 """MuJoCo's own state, ``env.data`` where MuJoCo is installed: the engine's numbers in MuJoCo's arrays.
 
-What the engine does not know by MuJoCo's names, above all contacts and constraints, MuJoCo computes when a script first asks
-for it, and from then on with every step.
+MuJoCo computes what the engine does not have under MuJoCo's names, above all contacts and constraints: when a script first
+requests it, and from then on with every step.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ _POSITION = ("mj_comPos", "mj_camlight", "mj_tendon", "mj_crb", "mj_factorM", "m
 """Stages that follow from poses and are cheap."""
 
 _CONSTRAINT = ("mj_collision", "mj_makeConstraint", "mj_island", "mj_projectConstraint", "mj_fwdVelocity")
-"""Stages that are not: contacts, constraints, and what follows from them."""
+"""Stages that are expensive: contacts, constraints, and what follows from them."""
 
 _CONSTRAINED = ("ncon", "contact", "ne", "nf", "nl", "nJ", "nA", "nefc", "nisland", "actuator_velocity", "ten_velocity")
 _PREFIXES = ("efc_", "iefc_", "island_", "map_", "dof_island", "tree_island")
@@ -66,7 +66,7 @@ def data_class(mujoco: ModuleType) -> Any:
     for name in ("actuator", "tendon", "ten", "__copy__", "__deepcopy__"):
         if hasattr(base, name):
             own[name] = completed(getattr(base, name))
-    # a copy, and so a pickle, is MuJoCo's alone
+    # a copy, and so a pickle, is a plain state of MuJoCo's
     own["__reduce_ex__"] = lambda self, protocol: (copy.copy, (self.__copy__(),))
     return type(base.__name__, (base,), {**own, "__module__": base.__module__, "__doc__": base.__doc__})
 
@@ -91,7 +91,7 @@ class MujocoLive(Live):
         self.idle = self._references()
 
     def _array(self, name: str) -> Any:
-        """Returns an array of MuJoCo's; empty ones are at one place there, where they could not be written to together."""
+        """Returns an array of MuJoCo's. Its empty arrays share an address, so they could not be written to together."""
         array = getattr(self.data, name)
         return array if array.size else np.zeros(array.shape)
 
@@ -123,7 +123,7 @@ class MujocoLive(Live):
         self.course.change("show")
 
     def _compute(self, functions: list[Any]) -> None:
-        """Calls functions of MuJoCo with the positions and velocities from which everything was computed; these stay."""
+        """Calls functions of MuJoCo with the positions and velocities from which everything was computed; keeps these."""
         model, data = self.model, self.data
         self.core.parts.fill_start(self._eq_active, self._state[:2])
         for function in functions:

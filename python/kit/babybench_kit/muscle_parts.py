@@ -1,4 +1,4 @@
-"""The curves and the parts of MIMo's muscles, as his own class shows them."""
+"""The curves and the parts of MIMo's muscles, as MIMo's own class shows them."""
 
 from __future__ import annotations
 
@@ -97,7 +97,7 @@ class MuscleParts:
         return np.select([length <= 1, length <= bend], [np.zeros_like(length), steep], straight)
 
     def collect_data_for_actuators(self) -> list[Array]:
-        """Returns 20 arrays, (n,), for the negative and the positive muscle of each actuator, if not said otherwise.
+        """Returns 20 arrays, (n,), for the negative and the positive muscle of each actuator, unless stated otherwise.
 
         Angle and velocity of the joint, angle from that of its spring, gear (one array each); excitation, activation, length,
         velocity, force, and the factors of :meth:`fl`, :meth:`fv` and :meth:`fp` (two arrays each).

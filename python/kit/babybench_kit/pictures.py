@@ -1,4 +1,4 @@
-"""Pictures and videos for people: ``babybench.utils``."""
+"""Pictures and videos: ``babybench.utils``."""
 
 from __future__ import annotations
 

@@ -45,7 +45,7 @@ def _forwarded(self: gym.Wrapper[Any, Any, Any, Any], name: str) -> Any:
 def forward_attributes() -> None:
     """Makes wrappers show the attributes of MIMo's environments, as all wrappers did before Gymnasium 1.
 
-    Scripts for the kit say ``env.touch`` and, in wrappers of their own, ``self.model``. Other environments are as before.
+    Scripts for the kit use ``env.touch`` and, in wrappers of their own, ``self.model``. Other environments are unaffected.
     """
     if not hasattr(gym.Wrapper, "__getattr__"):
         gym.Wrapper.__getattr__ = _forwarded  # type: ignore[attr-defined]
@@ -62,5 +62,5 @@ def register_kit() -> None:
         kwargs = {"model_path": scene_path("showroom.xml"), "render_mode": "human"} if name == "MIMoShowroom-v0" else {}
         entry_point = f"mimoEnv.envs:{cls}"
         if name in gym.registry and str(gym.registry[name].entry_point).startswith("mimo_infant."):
-            del gym.registry[name]  # MIMo 3 gives way, as it does where MIMo 2 came first
+            del gym.registry[name]  # MIMo 2 has precedence, as when it is registered first
         gym.register(id=name, entry_point=entry_point, max_episode_steps=steps, kwargs=kwargs, nondeterministic=True)

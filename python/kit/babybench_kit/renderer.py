@@ -1,4 +1,4 @@
-"""Pictures for people: ``env.mujoco_renderer``."""
+"""Rendered pictures: ``env.mujoco_renderer``."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ Camera = tuple[list[float], float, float, float]
 """A free camera: the point that it looks at, m, its distance from it, m, azimuth and elevation, degrees."""
 
 ROOM = "corner"
-"""The camera of pictures for which none is asked."""
+"""The default camera of pictures."""
 
 
 class MujocoRenderer:

@@ -14,7 +14,7 @@ def replaced(instance: object, original: Mapping[str, Any], names: Iterable[str]
 
 
 def refuse_uncalled(cls: type, uncalled: Iterable[str], instead: str) -> None:
-    """Refuses a subclass that replaces methods which are never called.
+    """Refuses a subclass that replaces methods that are never called.
 
     Raises:
         TypeError: It does; the text names them.
@@ -28,7 +28,7 @@ def refuse_uncalled(cls: type, uncalled: Iterable[str], instead: str) -> None:
 
 
 class Replaceable:
-    """A part of an environment whose work is the engine's, until a script replaces attributes or methods of it."""
+    """A part of an environment that the engine computes until a script replaces attributes or methods of it."""
 
     _uncalled: ClassVar[frozenset[str]] = frozenset()
     """Methods of MIMo's class that have no counterpart here."""
@@ -39,7 +39,7 @@ class Replaceable:
     _changed: set[str]
 
     def __init_subclass__(cls, **arguments: Any) -> None:
-        """Refuses subclasses that replace methods which are never called."""
+        """Refuses subclasses that replace methods that are never called."""
         super().__init_subclass__(**arguments)
         refuse_uncalled(cls, cls._uncalled, cls._instead)
 

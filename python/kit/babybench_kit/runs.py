@@ -35,7 +35,7 @@ def make_save_dirs(save_dir: str | os.PathLike[str]) -> None:
 
 
 def _mimo() -> str | None:
-    """Imports ``mimoEnv``, which registers the ids; returns where it is if it is MIMo's own."""
+    """Imports ``mimoEnv``, which registers the ids; returns its folder if it is MIMo's own."""
     module = importlib.import_module("mimoEnv")
     if swap.is_own(module):
         return None
@@ -55,7 +55,7 @@ _NEEDED = (
     "frame_skip",
     "render_size",
 )
-"""Keys that a scene and a run cannot do without."""
+"""Keys that a scene and a run need."""
 
 
 def _complete(config: Any) -> dict[str, Any]:
@@ -76,8 +76,8 @@ def make_env(config: Mapping[str, Any] | None = None, training: bool = True) -> 
     The files that the scene includes are those of the first checkout of the kit on ``sys.path``, or else the library's own.
 
     Args:
-        config: The configuration. Keys that are left out have their default (``babybench.config_keys()``), but for those of
-            the senses: without them the senses are the kit's own.
+        config: The configuration. Missing keys get their default (``babybench.config_keys()``), except for those of the
+            senses: without them the senses are the kit's own.
         training: Whether this is training.
 
     Warns:
@@ -85,7 +85,7 @@ def make_env(config: Mapping[str, Any] | None = None, training: bool = True) -> 
 
     Raises:
         AssertionError: There is no scene to evaluate.
-        TypeError: What is given is not a mapping.
+        TypeError: ``config`` is not a mapping.
         ValueError: A behavior that the kit does not have.
     """
     config = _complete(config)

@@ -39,11 +39,11 @@ class Document:
 
     text: str
     folder: Path
-    """Where files that it names are looked for."""
+    """The folder of the files that it names."""
     files: Mapping[str, bytes] = field(default_factory=dict)
-    """Contents by name, which replace files."""
+    """Contents of files by name, which replace those of the file system."""
     path: Path | None = None
-    """The file that it was read from; nothing if a program has compiled it."""
+    """The file that it was read from; ``None`` if a program has compiled it."""
 
     @classmethod
     def at(cls, path: Path) -> Document:
@@ -61,11 +61,11 @@ class Scene:
     version: str = "v1"
     """The version of MIMo."""
     assets: Path | None = None
-    """The folder that it includes files of; nothing if they are not there."""
+    """The folder of the files that it includes; ``None`` if they do not exist."""
     place: dict[str, list[float]] | None = None
-    """Where MIMo is put, if elsewhere than BabyBench does: ``pos``, m."""
+    """MIMo's place, if it is not BabyBench's: ``pos``, m."""
     servos: bool | None = None
-    """Whether its actuators are position servos; nothing if it has none."""
+    """Whether its actuators are position servos; ``None`` if it has no actuators."""
     third: bool = False
     """Whether it has MIMo 3, whose chest is a body of its own."""
     document: Document | None = None
@@ -159,12 +159,12 @@ def read_any_scene(path: Path) -> Scene:
 
 
 def document_scene(document: Document, bodies: Set[str | None]) -> Scene:
-    """Returns the scene that is a document with these bodies."""
+    """Returns the scene of a document with these bodies."""
     return Scene(version="v2" if "right_ffdistal" in bodies else "v1", third=bodies >= _CHEST, document=document)
 
 
 _CHEST = {"chest", "upper_body", "lower_body"}
-"""Bodies that MIMo 3 has together."""
+"""Bodies of which only MIMo 3 has all."""
 
 
 def _bodies(path: Path) -> set[str | None]:

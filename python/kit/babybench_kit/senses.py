@@ -1,6 +1,6 @@
 """MIMo's proprioception, balance and vision: ``mimoProprioception``, ``mimoVestibular``, ``mimoVision``.
 
-They run in the engine; these classes show what was sensed last, part by part.
+They run in the engine. These classes show what was sensed last, part by part.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ class Proprioception(Replaceable):
     VALID_COMPONENTS: ClassVar[list[str]] = []
 
     def __init__(self, env: SensingEnv, proprio_parameters: dict[str, Any] | None) -> None:
-        """Belongs to an environment."""
+        """Takes the environment."""
         self.env = env
         self._core = env._core
         self.proprio_parameters = proprio_parameters
@@ -57,8 +57,8 @@ class SimpleProprioception(Proprioception):
     """Joint angles (rad), velocities (rad/s), torques (N m), nearness of limits, and the state of the actuators.
 
     Attributes:
-        sensors: Names of the torque sensors; ``sensor_ids`` their ids, ``sensor_addrs`` (n, 3) where their values stand.
-        joint_names: Names of the joints; ``joint_ids`` their ids, ``joint_qpos`` and ``joint_qvel`` (n, 1) where they stand,
+        sensors: Names of the torque sensors; ``sensor_ids`` their ids, ``sensor_addrs`` (n, 3) the addresses of their values.
+        joint_names: Names of the joints; ``joint_ids`` their ids, ``joint_qpos`` and ``joint_qvel`` (n, 1) their addresses,
             ``joint_limits`` (n, 2) their limits, rad.
         sensor_names: What each entry of a part of the output belongs to.
         limit_thresh: Distance from a limit at which the limit is felt, rad.
@@ -67,7 +67,7 @@ class SimpleProprioception(Proprioception):
     VALID_COMPONENTS: ClassVar[list[str]] = ["velocity", "torque", "limits", "actuation"]
 
     def __init__(self, env: SensingEnv, proprio_parameters: dict[str, Any] | None) -> None:
-        """Belongs to an environment."""
+        """Takes the environment."""
         super().__init__(env, proprio_parameters)
         names, array = env._core.names, env._core.blueprint.model_array
         self.sensor_ids = [i for i, name in enumerate(names["sensor"]) if name.startswith("proprio:")]
@@ -154,7 +154,7 @@ class Vestibular(Replaceable):
     """
 
     def __init__(self, env: SensingEnv, vestibular_parameters: dict[str, Any]) -> None:
-        """Belongs to an environment."""
+        """Takes the environment."""
         self.env = env
         self._core = env._core
         self.vestibular_parameters = vestibular_parameters
@@ -168,17 +168,17 @@ class SimpleVestibular(Vestibular):
     """Acceleration (m/s^2) and angular velocity (rad/s) of the head.
 
     Attributes:
-        sensors: Names of the sensors; ``sensor_ids`` their ids, ``sensor_addrs`` (n, 3) where their values stand.
+        sensors: Names of the sensors; ``sensor_ids`` their ids, ``sensor_addrs`` (n, 3) the addresses of their values.
     """
 
     def __init__(self, env: SensingEnv, vestibular_parameters: dict[str, Any]) -> None:
-        """Belongs to an environment."""
+        """Takes the environment."""
         super().__init__(env, vestibular_parameters)
         self.sensors: list[str] = vestibular_parameters["sensors"]
         self.sensor_ids = [env._core.names["sensor"].index(name) for name in self.sensors]
         first = np.asarray(env._core.blueprint.model_array("sensor_adr"))[self.sensor_ids].astype(np.int64)
         self.sensor_addrs = first[:, None] + np.arange(3)
-        # the sensors of the head stand side by side
+        # the sensors of the head are adjacent
         flat = self.sensor_addrs.ravel()
         side_by_side = np.array_equal(flat, np.arange(flat[0], flat[0] + len(flat)))
         self._where = slice(int(flat[0]), int(flat[-1]) + 1) if side_by_side else flat
@@ -213,13 +213,13 @@ class Vision(Replaceable):
     """
 
     def __init__(self, env: SensingEnv, camera_parameters: dict[str, dict[str, Any]]) -> None:
-        """Belongs to an environment."""
+        """Takes the environment."""
         self.env = env
         self._core = env._core
         self.camera_parameters = camera_parameters
 
     def get_vision_obs(self) -> dict[str, NDArray[np.uint8]]:
-        """Looks, and returns the pictures."""
+        """Senses, and returns the pictures."""
         raise NotImplementedError
 
 
@@ -227,7 +227,7 @@ class SimpleVision(Vision):
     """A picture of each eye."""
 
     def __init__(self, env: SensingEnv, camera_parameters: dict[str, dict[str, Any]]) -> None:
-        """Belongs to an environment."""
+        """Takes the environment."""
         super().__init__(env, camera_parameters)
         self._shown = -1
         self._outputs: dict[str, NDArray[np.uint8]] = {}
@@ -255,7 +255,7 @@ class SimpleVision(Vision):
         return picture
 
     def get_vision_obs(self) -> dict[str, NDArray[np.uint8]]:
-        """Looks, and returns what the eyes see, (height, width, 3) each."""
+        """Senses, and returns what the eyes see, (height, width, 3) each."""
         self._core.observe()
         return dict(self.sensor_outputs)
 

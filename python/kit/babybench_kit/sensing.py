@@ -116,7 +116,7 @@ class SensingEnv(gym.Env):  # type: ignore[type-arg,unused-ignore]
     # --- observation ---
 
     def get_proprio_obs(self) -> Array:
-        """Returns the present proprioception, (n,)."""
+        """Returns the current proprioception, (n,)."""
         assert self.proprioception is not None
         return self.proprioception.get_proprioception_obs()
 
@@ -131,23 +131,23 @@ class SensingEnv(gym.Env):  # type: ignore[type-arg,unused-ignore]
         return self.vision.get_vision_obs()
 
     def get_vestibular_obs(self) -> Array:
-        """Returns the present sense of balance, (6,)."""
+        """Returns the current sense of balance, (6,)."""
         assert self.vestibular is not None
         return self.vestibular.get_vestibular_obs()
 
     def _get_obs(self) -> Observation:
-        """Returns the observation: the present one, or an earlier one with a sensory delay."""
+        """Returns the observation: the current one, or an earlier one with a sensory delay."""
         return self._delayed_observation(self._sensed())
 
     def _delayed_observation(self, observation: Observation) -> Observation:
-        """Returns the observation that arrives when another one is made: the same one, except in MIMo 3."""
+        """Returns the observation that arrives when one is made: the same one, except with MIMo 3's delay."""
         return observation
 
     def _sensed(self) -> Observation:
-        """Returns the present observation."""
+        """Returns the current observation."""
         core = self._core
         core.observe()
-        # what is felt again at one instant is something else
+        # feeling again at one instant gives other forces
         if self._share is not Share.SENSES and not core.course.moment.felt:
             if self.touch is not None:
                 core.course.change("feel")

@@ -16,7 +16,7 @@ from .scene import Scene
 from .tables import PART_OF_BODY, PARTS, SPACING_V1
 
 _FORGOTTEN = {"save_dir": "results", "save_logs_every": 1000, "max_episode_steps": 1_000_000_000, "seed": 0}
-"""Keys that do not change the engine; an environment is shared by configurations that differ in these."""
+"""Keys that do not change the engine: configurations that differ only in these share a compiled scene."""
 
 
 @functools.cache
@@ -41,14 +41,14 @@ def _names(params: Mapping[str, Any]) -> dict[str, Any]:
     """Returns the keys of a configuration that name the functions of touch parameters."""
     keys: dict[str, Any] = {"touch_active": True}
     for key, function in (("touch_function", "touch_function"), ("touch_response", "response_function")):
-        # a name that the engine does not have is that of a method of the sense, which does without the engine
+        # a name that the engine does not have is a method of the sense, which then computes without the engine
         known = _native.config_keys()[key]["choices"]
         keys[key] = params[function] if params[function] in known else known[-1]
     return keys
 
 
 def _touch(params: Mapping[str, Any]) -> dict[str, Any] | None:
-    """Returns the keys of a configuration that give the sensors of touch parameters; nothing if no keys give them."""
+    """Returns the keys of a configuration that give the sensors of touch parameters; ``None`` if no keys give them."""
     scales = params["scales"]
     factors = {round(scale / SPACING_V1[body], 12) for body, scale in scales.items() if body in SPACING_V1}
     keys = _names(params)

@@ -103,7 +103,7 @@ def _scene(
     last: str = "",
     settings: str = "",
 ) -> str:
-    """Returns a document with MIMo upright, all his motors, and bodies before him in the world."""
+    """Returns a document with MIMo upright, all his motors, and bodies before and after his in the world."""
     named = f' name="{joint}"' if joint else ""
     return f"""<mujoco model="MIMo">
   <include file="babybench/task_world.xml"/>

@@ -17,7 +17,7 @@ from babybench_kit import swap
 
 _TREES = Path(__file__).parent / "standins"
 MUJOCO = "BABYBENCH_MUJOCO"
-"""The variable that does without MuJoCo where MuJoCo is installed: ``off``."""
+"""The variable that disables an installed MuJoCo if it is ``off``."""
 
 
 def real(name: str) -> ModuleSpec | None:

@@ -1,7 +1,7 @@
-"""Decides whether this package or an installed MIMo provides ``mimoEnv``. Small, as every Python may import it.
+"""Decides whether this package or an installed MIMo provides ``mimoEnv``. It is small because every Python process may import it.
 
-``BABYBENCH_MIMO=babybench`` takes this package, ``BABYBENCH_MIMO=original`` takes MIMo. Without it this package serves where it
-was imported before ``mimoEnv``, or where MIMo is not there; where MIMo serves all the same, a warning says so.
+``BABYBENCH_MIMO=babybench`` selects this package, ``BABYBENCH_MIMO=original`` selects MIMo. Without the variable, this package
+serves if it was imported before ``mimoEnv`` or MIMo is not installed. Otherwise MIMo serves, with a warning.
 """
 
 from __future__ import annotations
@@ -40,7 +40,7 @@ def chosen(claimed: bool) -> bool:
     """Returns whether this package serves: by the variable, or else as ``claimed`` says.
 
     Raises:
-        ImportError: The variable has a value that means nothing.
+        ImportError: The variable has an unknown value.
     """
     choice = os.environ.get(CHOICE, "")
     if choice not in ("", "babybench", "original"):

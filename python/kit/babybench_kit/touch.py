@@ -41,8 +41,8 @@ def scale_linear(force: ArrayLike, distances: ArrayLike, scale: float, **_: Any)
 class TrimeshTouch(Touch):
     """Sensors spread over the surface of the bodies, which feel the forces of contacts near them.
 
-    MIMo's own asks for normals by :meth:`get_contact_normal`, which inverts them in place where the sensing body is the first
-    of a contact. So what uses the frame of a contact, and what is felt a second time at one instant, has such normals inverted.
+    MIMo's own class gets normals by :meth:`get_contact_normal`, which inverts them in place where the sensing body is the first
+    of a contact. So these normals are inverted for later uses of a contact's frame, and if touch is felt twice at one instant.
     """
 
     VALID_TOUCH_TYPES: ClassVar[dict[str, int]] = {"force_vector": 3, "force_vector_global": 3, "normal_force": 3}
@@ -64,7 +64,7 @@ class TrimeshTouch(Touch):
     _instead = "replace get_nearest_sensor or get_sensors_within_distance, which find the sensors near a contact"
 
     def __init__(self, env: SensingEnv, touch_params: dict[str, Any]) -> None:
-        """Belongs to an environment."""
+        """Takes the environment."""
         super().__init__(env, touch_params)
         layout = {skin["body"]: skin for skin in env._core.engine.touch_layout()}
         missing = [env._core.names["body"][body] for body in self.sensor_scales if body not in layout]
@@ -106,7 +106,7 @@ class TrimeshTouch(Touch):
                 )
 
     def _feels_as_the_engine(self, bodies: int) -> bool:
-        """Returns whether no step from a contact to the output is a subclass's own, or another one than the engine's."""
+        """Returns whether all steps from a contact to the output are the engine's, and none a subclass's."""
         config = self._core.config
         return (
             len(self.sensor_scales) == bodies
@@ -212,7 +212,7 @@ class TrimeshTouch(Touch):
         """Returns the frames of all contacts, (n, 9), as MIMo's own has left them."""
         contacts = self._core.contacts(pull)
         if self._felt_by_engine() and self._inverted is not contacts:
-            self._inverted = contacts  # as the engine, which felt first, does not
+            self._inverted = contacts  # the engine, which felt first, does not invert them
             self._invert(contacts)
         return contacts["frame"]
 
@@ -247,7 +247,7 @@ class TrimeshTouch(Touch):
         bodies = [self._core.body_of_geom[geoms].tolist() for geoms in pairs]
         if own_force or own_sensors:
             candidates = range(len(normals))
-        else:  # most contacts are of nothing that feels
+        else:  # most contacts have no sensing body
             felt = self._sensed[pairs[0]] | self._sensed[pairs[1]]
             candidates = np.flatnonzero(felt & (abs(normals) >= _LEAST_FORCE)).tolist()
         for number in candidates:
@@ -347,7 +347,7 @@ class TrimeshTouch(Touch):
         )
 
     def spread_linear(self, contact_id: int, body_id: int, force: ArrayLike) -> None:
-        """Adds a force to the sensors within twice their distance of a contact, the less the farther they are."""
+        """Adds a force to the sensors within twice their distance of a contact, less to those farther away."""
         point = self.get_contact_position_relative(contact_id, body_id)
         scale = self.sensor_scales[body_id]
         sensors, distances = self.get_sensors_within_distance(point, body_id, 3 * scale)
@@ -412,7 +412,7 @@ class TrimeshTouch(Touch):
 
 
 def _fixed(array: Array) -> Array:
-    """Returns a view that cannot be written to."""
+    """Returns a read-only view."""
     view: Array = array.view()
     view.flags.writeable = False
     return view
@@ -438,7 +438,7 @@ _STEPS: Iterable[str] = (
     "sensor_outputs",
     "_sensor_distances",
 )
-"""Methods between a contact and the output, as this module defines them: a script that replaces one has all called."""
+"""Methods between a contact and the output, as this module defines them: if a script replaces one, all are called."""
 _SPREADING = (
     "spread_linear",
     "get_contact_normal",

@@ -64,7 +64,7 @@ class Touch(Replaceable):
     Attributes:
         env: The environment.
         sensor_scales: Distance between the sensors of each body, by its id, m.
-        touch_type: What a sensor reports; ``touch_function`` is the method, ``touch_size`` how many numbers.
+        touch_type: What a sensor reports; ``touch_function`` is the method, ``touch_size`` the number of values.
         response_type: How a force spreads; ``response_function`` is the method.
         sensor_positions: Where the sensors of each body are, (n, 3), frame of the body, m.
         sensor_outputs: What they felt last, (n, touch_size), N.
@@ -74,7 +74,7 @@ class Touch(Replaceable):
     VALID_RESPONSE_FUNCTIONS: ClassVar[list[str]] = []
 
     def __init__(self, env: SensingEnv, touch_params: dict[str, Any]) -> None:
-        """Belongs to an environment."""
+        """Takes the environment."""
         self.env = env
         self._core = env._core
         ids = {name: number for number, name in enumerate(env._core.names["body"])}

@@ -1,6 +1,6 @@
 """Names, subtrees and frames of models and states: the helpers of ``mimoEnv.utils``.
 
-Every function takes MuJoCo's ``MjModel`` and ``MjData`` or what stands for them here. Positions are in m, frames are (3, 3)
+Every function takes MuJoCo's ``MjModel`` and ``MjData`` or their stand-ins. Positions are in m, frames are (3, 3)
 matrices whose columns are the axes in the world; vectors have the shape (3,) or (n, 3).
 """
 
@@ -46,7 +46,7 @@ def weighted_sum_vectors(vector1: ArrayLike, vector2: ArrayLike, weight1: float,
 
 
 def normalize_vectors(vectors: ArrayLike) -> Array:
-    """Returns vectors, along the last axis, at length 1."""
+    """Normalizes vectors along the last axis."""
     return np.asarray(np.asarray(vectors) / np.linalg.norm(vectors, axis=-1, keepdims=True))
 
 
@@ -78,7 +78,7 @@ def get_geoms_for_body(sim_model: Any, body_id: int) -> range:
 
 
 def get_child_bodies(sim_model: Any, body_id: int) -> list[int]:
-    """Returns the ids of a body and of all below it: each body before its children, of siblings the last first."""
+    """Returns the ids of a body and of all below it: each body before its children, siblings in reverse order."""
     children: dict[int, list[int]] = {}
     for body, parent in enumerate(np.asarray(sim_model.body_parentid).tolist()):
         children.setdefault(parent, []).append(body)
@@ -120,7 +120,7 @@ def get_joint_qvel_addr(mujoco_model: Any, joint_id: int) -> range:
 
 
 def set_joint_qpos(mujoco_model: Any, mujoco_data: Any, joint_name: str, qpos: ArrayLike) -> None:
-    """Sets the position of a joint, rad or m; of a free joint position and quaternion (7)."""
+    """Sets the position of a joint, rad or m; for a free joint, position and quaternion (7)."""
     where = get_joint_qpos_addr(mujoco_model, mujoco_model.joint(joint_name).id)
     mujoco_data.qpos[where.start : where.stop] = qpos
 

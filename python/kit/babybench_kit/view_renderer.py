@@ -32,7 +32,7 @@ class ViewRenderer:
         Args:
             data: The state; it is drawn as it is when :meth:`render` is called.
             camera: A camera of the model, by number or name, a free or tracking ``MjvCamera``, or -1 for one that sees all.
-            scene_option: Must be ``None``: what is shown of an environment is its own.
+            scene_option: Must be ``None``: the environment's own settings apply.
 
         Raises:
             ValueError: The model has no such camera, or the state is that of another environment.

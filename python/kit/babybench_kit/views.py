@@ -1,10 +1,10 @@
 """Stand-ins for MuJoCo's ``MjModel`` and ``MjData`` where MuJoCo is not installed.
 
-Names, shapes, number types and units are MuJoCo's. The arrays of a state show the present after every step; ``qpos``, ``qvel``,
-``ctrl``, ``qfrc_applied``, ``xfrc_applied`` and those of mocap bodies can be written. Of a model ``eq_active0`` and ``eq_data``
-can be written, which lock joints, what the engine takes over in the next step (gravity, timestep, mass, inertia, size, poses,
-friction, damping, stiffness, armature, gears, softness), and what the next picture shows: colours, groups, materials, lights,
-fields of view.
+Names, shapes, number types and units are MuJoCo's. The arrays of a state show the current instant after every step; ``qpos``,
+``qvel``, ``ctrl``, ``qfrc_applied``, ``xfrc_applied`` and those of mocap bodies can be written. In a model these can be
+written: ``eq_active0`` and ``eq_data``, which lock joints; values that the next step uses (gravity, timestep, mass, inertia,
+size, poses, friction, damping, stiffness, armature, gears, softness); and values that the next picture shows (colours, groups,
+materials, lights, fields of view).
 """
 
 from __future__ import annotations
@@ -96,7 +96,7 @@ class ModelView(_Named):
     _renderer = ViewRenderer
 
     def __init__(self, blueprint: _native.Blueprint, engine: _native.Env, width: int, height: int) -> None:
-        """Shows the scene of a blueprint as an environment has it, and the largest size of its pictures, pixels."""
+        """Takes the scene of a blueprint as an environment has it, and the largest size of its pictures, pixels."""
         own = self.__dict__
         options = dict(blueprint.model_options)
         extras = _native.model_extras(blueprint)
@@ -138,7 +138,7 @@ class ModelView(_Named):
                 array = array.astype(np.float32)
             elif name in _WIDTHS:
                 array = _widened(array, _WIDTHS[name])
-        # what is written to owns its numbers
+        # writable arrays own their numbers
         array = array.copy() if name in _WRITABLE else _fixed(array, name)
         self.__dict__[name] = array
         return array
@@ -181,7 +181,7 @@ _JOINT_ROWS = ("xanchor", "xaxis")
 
 
 class DataView(_Named):
-    """The present state under the names of ``MjData``."""
+    """The current state under the names of ``MjData``."""
 
     def __init__(self, env: _native.Env, model: ModelView, shapes: dict[str, tuple[int, ...]]) -> None:
         """Allocates all arrays as one block, whose reference count shows whether a program holds any of them."""
@@ -224,7 +224,7 @@ class DataView(_Named):
 
     @property
     def eq_active(self) -> NDArray[np.uint8]:
-        """Returns which equality constraints hold now; ``model.eq_active0`` decides which will from the next reset on."""
+        """Returns which equality constraints are active; ``model.eq_active0`` decides which are from the next reset on."""
         active, parts = np.zeros(self.model.neq, np.uint8), self._sync.core.parts
         parts.fill_start(active, [np.zeros(self.model.nq), np.zeros(self.model.nv)])
         active.flags.writeable = False

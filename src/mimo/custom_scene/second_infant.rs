@@ -83,7 +83,7 @@ fn element(start: &BytesStart<'_>) -> Option<BytesStart<'static>> {
     Some(out)
 }
 
-/// Makes an include refer to the second infant's file. Returns `Some(None)` for files that both infants share.
+/// Makes an include refer to the second infant's file. Returns `None` if it is malformed, `Some(None)` for files both infants share.
 fn included(start: &BytesStart<'_>) -> Option<Option<BytesStart<'static>>> {
     let attribute = start.attributes().next()?.ok()?;
     let file = &*attribute.value;

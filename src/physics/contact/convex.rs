@@ -197,7 +197,7 @@ fn shallow<A: Support, B: Support>(
     CoreContact::Known(touch(closest.distance - radius, surface, closest.b, margin))
 }
 
-/// Finds the overlap of two shapes, by GJK and EPA; `Some(None)` if they overlap and EPA finds no depth, which is still a contact.
+/// Finds the overlap of two shapes, by GJK and EPA. Returns `Some(None)`, still a contact, if they overlap but EPA finds no depth.
 fn deep<A: Support, B: Support>(
     shape: &MinkowskiDifference<A, B>,
     a: &PlacedGeom,

@@ -71,11 +71,11 @@ class MIMoCatchEnv(TaskMethods):
     Attributes:
         action_penalty, jitter: As the arguments; ``use_position_inaccuracy`` is ``position_inaccurate``.
         position_limits: How far the ball is moved at the start of an episode, (7,); MIMo's own then loses it, and so does this.
-        position_inaccuracy_limits, position_offset: Largest and present distance of the point from the ball, (3,), m.
-        size_limits, ball_size: Least and largest, and present radius of the ball, m.
-        mass_limits, ball_mass: Least and largest, and present mass of the ball, kg.
-        jitter_array, jitter_period: The factors, and for how many steps they stay.
-        steps_in_contact_for_success: For how many steps the ball is to be held.
+        position_inaccuracy_limits, position_offset: Largest and current distance of the point from the ball, (3,), m.
+        size_limits, ball_size: Least and largest, and current radius of the ball, m.
+        mass_limits, ball_mass: Least and largest, and current mass of the ball, kg.
+        jitter_array, jitter_period: The factors, and for how many steps they apply.
+        steps_in_contact_for_success: For how many steps the ball must be held.
         in_contact_past: Whether it was held in each of the last of these steps, by the number of the step.
     """
 
@@ -207,7 +207,7 @@ class MIMoCatchEnv(TaskMethods):
         if self.use_position_inaccuracy:
             limits = self.position_inaccuracy_limits
             self.position_offset = np.random.uniform(low=-limits, high=limits)
-        # the constants of the model are computed anew there, which leaves the scene at the positions of the springs
+        # the constants of the model are recomputed there, which leaves the scene at the positions of the springs
         self._core.forward(self._core.blueprint.model_array("qpos_spring"), self.init_qvel)
         gravity = np.array(self._core.engine.model_array("opt.gravity"))
         self._core.change_model({"opt.gravity": gravity * (1, 1, 0)})

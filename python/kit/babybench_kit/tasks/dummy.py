@@ -19,7 +19,7 @@ DEMO_XML = scene_path("showroom.xml")
 BENCHMARK_XML = scene_path("benchmark_scene.xml")
 BENCHMARK_XML_V2 = scene_path("benchmarkv2_scene.xml")
 TEST_XML = scene_path("test_scene.xml")
-"""A name that MIMo has, too, without the file."""
+"""A name that MIMo also has, without the file."""
 
 
 class MIMoDummyEnv(TaskMethods):

@@ -59,7 +59,7 @@ class MIMoStaticMuscleTestEnv(MIMoDummyEnv):
 
 
 class MIMoStaticMuscleTestV2Env(MIMoStaticMuscleTestEnv):
-    """The same with MIMo v2; the scene of MIMo's own names a joint that MIMo does not have, and does not load."""
+    """The same with MIMo v2; MIMo's own scene names a joint that MIMo does not have, and does not load."""
 
     def __init__(self, model_path: str | os.PathLike[str] = STATIC_TEST_XML_V2, **kwargs: Any) -> None:
         """Compiles the scene."""

@@ -1,4 +1,4 @@
-"""Touching a part of the own body: ``mimoEnv.envs.selfbody``."""
+"""Touching a part of his own body: ``mimoEnv.envs.selfbody``."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ TOUCH_PARAMS: dict[str, Any] = {
 _TARGETS = 37
 """Length of a goal."""
 _NO_TARGETS = 2
-"""Bodies at the end of the list that are no targets."""
+"""Number of bodies at the end of the list that are not targets."""
 _SETTLING = 25
 """Physics steps in which weld and locks settle."""
 _FOUND = 500

@@ -18,7 +18,7 @@ _Item = TypeVar("_Item")
 
 
 def _late(history: list[_Item], item: _Item, delay: int) -> _Item:
-    """Returns the item that arrives now: the first one, until there are ``delay`` of them."""
+    """Returns the item that arrives now: always the first one until ``delay`` items are stored."""
     history.append(item)
     return history[0] if len(history) < delay else history.pop(0)
 
@@ -28,8 +28,8 @@ class MIMoEnv(mimo_env.MIMoEnv):
 
     Args:
         model_path: The scene: any MJCF document with MIMo.
-        sensory_delay: Observations after which one arrives, less one; 0 for no delay.
-        motor_delay: Actions after which one arrives, less one; 0 for no delay. Those of resets count.
+        sensory_delay: An observation arrives ``sensory_delay - 1`` observations later; 0 for no delay.
+        motor_delay: An action arrives ``motor_delay - 1`` actions later, those of resets included; 0 for no delay.
         age: MIMo's age, months; ``None`` for the proportions of the scene.
         custom_measurements: Must be ``None``: measurements are keys of a configuration here.
 
@@ -68,7 +68,7 @@ class MIMoEnv(mimo_env.MIMoEnv):
 
         Raises:
             NotImplementedError: ``custom_measurements`` is given.
-            ValueError: A delay below 0, or an age at which MIMo has no size.
+            ValueError: A delay is below 0, or MIMo has no size at this age.
         """
         if custom_measurements is not None:
             raise NotImplementedError(
@@ -105,15 +105,15 @@ class MIMoEnv(mimo_env.MIMoEnv):
         self.vision = SimpleVision(self, vision_params)
 
     def _delayed_action(self, action: ArrayLike) -> ArrayLike:
-        """Returns the action that arrives when another one is given."""
+        """Returns the action that arrives when one is given."""
         return _late(self._action_history, action, self.motor_delay) if self.motor_delay else action
 
     def _delayed_observation(self, observation: Observation) -> Observation:
-        """Returns the observation that arrives when another one is made."""
+        """Returns the observation that arrives when one is made."""
         return _late(self._obs_history, observation, self.sensory_delay) if self.sensory_delay else observation
 
     def _reset_simulation(self) -> None:
-        """Forgets the past and delayed items, puts the actuators to rest, and samples a goal."""
+        """Resets the simulation and delayed items, puts the actuators to rest, and samples a goal."""
         self._action_history.clear()
         self._obs_history.clear()
         super()._reset_simulation()

@@ -43,7 +43,7 @@ def calc_volume(size: Sequence[float], geom_type: str) -> float:
     """Returns the volume of a geom of a size, m^3: ``sphere``, ``capsule``, ``box`` or ``cylinder``.
 
     Raises:
-        ValueError: Another type.
+        ValueError: The type is another one.
     """
     if geom_type == "sphere":
         return float(4 / 3 * np.pi * size[0] ** 3)
@@ -60,7 +60,7 @@ def mj_unit(nums: ArrayLike, unit: str, measure: str) -> Any:
     """Returns measures as sizes of geoms, m: half of a length (``len``), the radius of a circumference (``circ``).
 
     Raises:
-        ValueError: Another unit than ``m``, ``cm`` and ``mm``, or another measure.
+        ValueError: The unit is not ``m``, ``cm`` or ``mm``, or the measure is another one.
     """
     if unit not in _METRES or measure not in _HALVES:
         raise ValueError(f"unit is {unit!r} and measure {measure!r}, expected m, cm or mm, and len or circ")
@@ -75,7 +75,7 @@ def get_growth_params(age: float, mimo_version: str, custom: Any = None) -> dict
     ``gears`` of motors.
 
     Raises:
-        ValueError: An age at which MIMo has no size, or another version than ``v1`` and ``v2``.
+        ValueError: MIMo has no size at this age, or the version is neither ``v1`` nor ``v2``.
         NotImplementedError: ``custom`` is given.
     """
     if custom is not None:

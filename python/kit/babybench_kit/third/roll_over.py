@@ -34,7 +34,7 @@ _COST = 0.01
 class MIMoRollOverEnv(TaskMethods, MIMoEnv):
     """MIMo lies on the floor, and turns over.
 
-    The goal that is reached is 0 on the side of the start and 1 on the other one, by the pitch of the pelvis. The reward is that
+    The achieved goal is 0 on the side of the start and 1 on the other one, by the pitch of the pelvis. The reward is that
     number, less a hundredth of the squares of the controls. Episodes have no end, but success is reported. The arguments are
     those of :class:`~babybench_kit.third.env.MIMoEnv`.
 
@@ -58,7 +58,7 @@ class MIMoRollOverEnv(TaskMethods, MIMoEnv):
         """Compiles the scene, lays MIMo down, and lets him settle.
 
         Raises:
-            ValueError: :data:`STARTING_POSITION` is something else.
+            ValueError: :data:`STARTING_POSITION` is another word.
         """
         if STARTING_POSITION not in _LYING:
             raise ValueError(f"STARTING_POSITION is {STARTING_POSITION!r}, expected {' or '.join(_LYING)}")

@@ -22,9 +22,7 @@ def main() -> None:
     """Shows an environment with random actions in a window, until that is closed or the program is interrupted."""
     parser = argparse.ArgumentParser(description="Shows one of MIMo 3's environments with random actions.")
     parser.add_argument("--env", choices=sorted(ENV_NAMES), default="reach", help="the environment")
-    parser.add_argument(
-        "--fps", type=float, default=None, help="pictures in a second; those of the environment otherwise"
-    )
+    parser.add_argument("--fps", type=float, default=None, help="pictures per second; by default the environment's")
     arguments = parser.parse_args()
     register_mimo_envs()
     env = gym.make(ENV_NAMES[arguments.env], render_mode="human")

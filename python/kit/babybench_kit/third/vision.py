@@ -27,7 +27,7 @@ _CUTOFFS = (
 _GROWN = 18.0
 """The age of a MIMo without an age, months."""
 _PARTS = 32
-"""Places between two pixels."""
+"""Number of positions between two pixels."""
 _FOVEA = 10.0
 """Strength of a fovea that is requested without a number."""
 
@@ -46,7 +46,7 @@ class SimpleVision(senses.SimpleVision):
     _state: ClassVar[frozenset[str]] = frozenset({"acuity_functions"})
 
     def __init__(self, env: SensingEnv, camera_parameters: dict[str, dict[str, Any]]) -> None:
-        """Belongs to an environment."""
+        """Takes the environment."""
         self.acuity_functions: dict[str, Array] = {}
         self.foveation: dict[str, float] = {}
         age = getattr(env, "age", None)
@@ -109,7 +109,7 @@ class SimpleVision(senses.SimpleVision):
 
 
 def _between(img: NDArray[np.uint8], row: Array, column: Array) -> NDArray[np.uint8]:
-    """Returns the colours of points between pixels, to a 32nd of a pixel, as libraries for pictures have them.
+    """Returns the colours of points between pixels, to a 32nd of a pixel, as image libraries compute them.
 
     Beyond its border a picture continues as its mirror image.
     """

@@ -87,7 +87,7 @@ impl Builder<'_> {
         }
     }
 
-    /// Gives a facet entries for its edges, because it is no longer a triangle (`qh_makeridges`).
+    /// Adds the ridges of a facet that is no longer a simplex (`qh_makeridges`).
     pub(super) fn make_ridges(&mut self, facet: Id) -> HullResult {
         if !self.facets[facet].simplicial {
             return Ok(());

@@ -1,4 +1,4 @@
-"""Touching a part of the own body."""
+"""Touching a part of his own body."""
 
 from babybench_kit.assets import scene_path as _path
 from babybench_kit.assets import written
