@@ -73,7 +73,7 @@ pub struct Drawable {
     /// Index into [`Scenery::meshes`](crate::Scenery::meshes), after which the parts of all flexes and skins are counted.
     pub mesh: usize,
     /// Scale of the unit shape as the model has it, m; 1 for meshes of the model; a capsule's is radius, radius, half length, which is 1
-    /// for a piece of a tendon and an edge of a flex. Images follow [`Drawable::placed`].
+    /// for a piece of a tendon and an edge of a flex. Images use [`Drawable::placed`].
     pub size: [f32; 3],
     /// Radius of the bounding sphere around its origin, m.
     pub radius: f32,
@@ -91,7 +91,7 @@ pub struct Drawable {
     pub texture_scale: [f32; 3],
     /// Offset of texture coordinates, see `texture_scale`.
     pub texture_offset: f32,
-    /// Where the light on a plane is computed, if its corners do not do.
+    /// Where the light on a plane is computed, if its corners are not enough.
     pub(super) lattice: Option<Lattice>,
     /// Type and size of the element in the model.
     kind: GeomType,
@@ -158,7 +158,7 @@ impl Drawable {
         let mut drawable = Self {
             element,
             shape,
-            // of a mesh of the model, its maker knows it
+            // for a mesh of the model, the caller sets the index
             mesh: shape as usize,
             size: scale,
             radius,
@@ -209,7 +209,7 @@ impl Drawable {
     }
 
     /// Returns the drawable with the size that it has in these poses, its position and its orientation; `None` for a piece of a tendon
-    /// that is not there.
+    /// that does not exist.
     #[inline(always)]
     pub fn placed(&self, poses: &Poses) -> Option<(Self, Vec3, Mat3)> {
         match self.element {
@@ -238,7 +238,7 @@ impl Drawable {
         }
     }
 
-    /// Returns the position of a drawable for a camera: that of the element, but for planes without an end that are lit on a lattice.
+    /// Returns the position of a drawable for a camera: that of the element, except for endless planes that are lit on a lattice.
     pub(super) fn centred(&self, pos: Vec3, mat: &Mat3, eye: Vec3) -> Vec3 {
         let Some(lattice) = &self.lattice else { return pos };
         let mut centre = pos;

@@ -25,8 +25,8 @@ pub struct Lattice {
     stride: [f32; 2],
 }
 
-/// Returns half the side of a plane that has no end, and the distance by multiples of which it moves, m. `repeat` is how often the
-/// texture of its material is repeated.
+/// Returns half the side of a plane that has no end, and the distance by multiples of which it moves, m. `repeat` is the number of
+/// repetitions of its material's texture.
 fn endless(far: f32, repeat: Option<f64>) -> (f32, f32) {
     let half_stride = match repeat {
         Some(repeat) if repeat > 0.0 => (2.0 / repeat) as f32,
@@ -95,7 +95,7 @@ impl Lattice {
     #[cfg(any(test, feature = "wgpu"))]
     pub fn lines(&self, direction: usize) -> Vec<f32> {
         let (half, step) = (self.half[direction], self.step[direction]);
-        // a line that rounding puts beside the edge would be there twice
+        // a line that rounding puts beside the edge would appear twice
         let count = (half / step * 0.999_999) as i32;
         let inner = (-count..=count).map(|k| k as f32 * step / half);
         std::iter::once(-1.0).chain(inner).chain([1.0]).collect()

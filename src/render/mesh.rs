@@ -90,7 +90,7 @@ impl Mesh {
     fn vertex(&mut self, (p, n): MeshPoint) -> u16 {
         let first = self.bands.last().map_or(0, |band| band.vertices.start);
         let known = (first..self.x.len()).rev().find(|&i| {
-            // vertices are shared only if light and place are the same to the bit, so that sharing never shows
+            // vertices are shared only if light and place are the same to the bit, so that sharing is never visible
             let same = |a: f32, b: f32| a.to_bits() == b.to_bits();
             same(self.x[i], p[0])
                 && same(self.y[i], p[1])
@@ -170,7 +170,7 @@ impl Mesh {
         }
     }
 
-    /// Adds the vertices of a row that are new; returns the first. They stand one after the other.
+    /// Adds the vertices of a row that are new; returns the first. They are consecutive.
     fn row(&mut self, count: usize, at: impl Fn(usize) -> MeshPoint) -> u16 {
         let first = self.vertex(at(0));
         for j in 1..=count {
@@ -233,7 +233,7 @@ impl Mesh {
         }
     }
 
-    /// Ends a mesh of one band, the triangles of which are in no strip.
+    /// Ends a mesh of one band whose triangles are in no strip.
     pub(super) fn end_loose(&mut self) {
         self.fill();
         if let Some(band) = self.bands.last_mut() {

@@ -106,7 +106,7 @@ pub enum RenderError {
     /// The model has no such camera.
     #[error("camera {camera} does not exist: the model has {count}, numbered from 0")]
     Camera {
-        /// Camera asked for, by id.
+        /// Requested camera, by id.
         camera: usize,
         /// Number of cameras.
         count: usize,
@@ -116,7 +116,7 @@ pub enum RenderError {
         "pictures have their camera's axis in the middle: camera {camera} has a principal point off it; leave out principal and principalpixel"
     )]
     OffCentre {
-        /// Camera asked for, by id.
+        /// Requested camera, by id.
         camera: usize,
     },
     /// The rays of the camera are parallel.
@@ -124,7 +124,7 @@ pub enum RenderError {
         "pictures are drawn in perspective: camera {camera} is orthographic; leave that out, and put it further away with a smaller fovy"
     )]
     Orthographic {
-        /// Camera asked for, by id.
+        /// Requested camera, by id.
         camera: usize,
     },
     /// The free camera has no pose.
@@ -133,9 +133,9 @@ pub enum RenderError {
     /// The image is empty or too large.
     #[error("an image cannot have {width} x {height} pixels; a side has 1 to {MAX_SIZE}")]
     Size {
-        /// Width asked for, pixels.
+        /// Requested width, pixels.
         width: usize,
-        /// Height asked for, pixels.
+        /// Requested height, pixels.
         height: usize,
     },
     /// The buffer has the wrong length.
@@ -156,7 +156,7 @@ pub enum RenderError {
         /// Number of elements.
         expected: usize,
     },
-    /// The configuration asks for a renderer that this build does not have.
+    /// The configuration selects a renderer that this build does not have.
     #[error(
         "this build has no wgpu renderer: build with the cargo feature `wgpu` (cargo run --features wgpu), or use \
          renderer: cpu, which needs nothing"

@@ -27,7 +27,7 @@ impl ModelMeshes {
         }
     }
 
-    /// Returns the places in `meshes` of the parts of the mesh or height field that an element shows, which are added at the first call.
+    /// Returns the indices in `meshes` of the parts of the mesh or height field that an element shows, which are added at the first call.
     pub fn parts(&mut self, model: &Model, element: Element, meshes: &mut Vec<Mesh>) -> Range<usize> {
         let Element::Geom(g) = element else { return 0..0 };
         let Some(id) = model.geom_dataid[g] else { return 0..0 };

@@ -1,5 +1,5 @@
-//! Stands for a renderer on a GPU in programs that have none, or that cannot wait for its images, as a page: there never is a value, so
-//! that nothing else has to ask how the library was built.
+//! Replaces the renderer on a GPU in programs that have none, or that cannot wait for its images, such as a page. Its types have no
+//! values, so no other code has to check how the library was built.
 
 use std::sync::Arc;
 

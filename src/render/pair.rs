@@ -67,7 +67,7 @@ impl PairRenderer {
         outcome
     }
 
-    /// Wakes the thread, if there is one in this process, as there will be two images to draw in a moment.
+    /// Wakes the thread, if there is one in this process, because there will soon be two images to draw.
     pub fn wake(&self) {
         if let Some(thread) = self.thread.as_ref().filter(|t| t.process == std::process::id()) {
             thread.pool.wake();
@@ -79,7 +79,7 @@ impl PairRenderer {
         self.drawing.as_ref().map_or(0, |drawing| drawing.renderer.passes())
     }
 
-    /// Returns the thread, starting it if need be. A forked process starts its own.
+    /// Returns the thread, starting it if needed. A forked process starts its own.
     fn thread(&mut self) -> Option<&DrawingThread> {
         let process = std::process::id();
         if self.thread.as_ref().is_some_and(|thread| thread.process != process) {

@@ -1,4 +1,4 @@
-//! Skins and flexes in given poses, computed anew for every picture.
+//! Skins and flexes in given poses, recomputed for every picture.
 
 use super::drawable::Drawable;
 use super::mesh::Mesh;

@@ -1,4 +1,4 @@
-//! The renderer that a configuration asks for.
+//! The renderer that a configuration selects.
 
 use std::sync::Arc;
 
@@ -79,7 +79,7 @@ impl Renderer {
         Self::in_memory(scenery, BufferSource::Own(Box::default()))
     }
 
-    /// Creates a renderer on the CPU that draws in memory which others use, too.
+    /// Creates a renderer on the CPU that shares its buffers with others.
     pub fn sharing(scenery: Arc<Scenery>, memory: RendererPool) -> Self {
         Self::in_memory(scenery, BufferSource::Shared(memory))
     }
@@ -109,8 +109,8 @@ impl Renderer {
     }
 
     /// Sets whether two images are drawn at once on the CPU, by the caller and one more thread, which starts with the first
-    /// such pair: 2, or 1, with which a renderer begins. The bytes are the same. More than 2 means 2, and 0 means 1; without
-    /// the feature `parallel`, in WebAssembly, on one core, and where the system gives no thread, the caller draws alone.
+    /// such pair: 2, or 1, the default. The bytes are the same. More than 2 means 2, and 0 means 1; without the feature
+    /// `parallel`, in WebAssembly, on one core, and where the system gives no thread, the caller draws alone.
     pub fn set_threads(&mut self, threads: usize) {
         match &mut self.backend {
             Backend::Cpu { pair, .. } if threads > 1 && PairRenderer::is_of_use() => drop(pair.get_or_insert_default()),
@@ -227,7 +227,7 @@ impl Renderer {
     }
 }
 
-/// Pairs requests with their buffers. For a request without any there is one that is too short.
+/// Pairs requests with their buffers. A request without buffers gets one that is too short, so drawing fails.
 pub(super) fn pairs<'r, 's, 'o>(
     requests: &'r [RenderRequest<'s>],
     images: impl IntoIterator<Item = ImageBuffers<'o>>,

@@ -83,7 +83,7 @@ pub enum LightAim {
 pub struct Camera {
     /// Vertical field of view, degrees.
     pub fovy: f64,
-    /// Half the width of its sensor by the focal length along it, where it has a sensor; else the width of a picture follows from its height.
+    /// Half the width of its sensor over its horizontal focal length. Without a sensor, the width of a picture follows from its height.
     pub half_width: Option<f64>,
     /// Whether the axis of its lens meets the middle of its sensor: others are not drawn.
     pub centred: bool,
@@ -197,7 +197,7 @@ impl Scenery {
                 _ => !meshes[drawable.mesh].texcoord.is_empty(),
             };
             if explicit && matches!(drawable.texture.map(|t| &textures[t]), Some(TexturePixels::Cube(_))) {
-                // to which coordinates in an image say nothing
+                // coordinates in an image have no meaning for a cube
                 drawable.texture = None;
             }
             drawable.place_texture(model, &textures);

@@ -10,7 +10,7 @@ use crate::model::{Model, TrnType, Wrap};
 const POINTS: usize = 30;
 /// Pieces of a catenary.
 const HANGING: usize = POINTS - 2;
-/// Distance of the ends across, by the length, below which a rope hangs straight down from both.
+/// Horizontal distance of the ends, relative to the length, below which a rope hangs straight down from both.
 const NARROW: f64 = 0.01;
 /// Mark in [`Poses::wrap_obj`] of a pulley, where the path is interrupted.
 const PULLEY: i32 = -2;
@@ -67,7 +67,7 @@ fn rope(model: &Model, tendon: usize) -> Vec3 {
 }
 
 impl Drawable {
-    /// Returns a piece of a tendon as these poses have it; `None` if it is not there.
+    /// Returns a piece of a tendon in these poses; `None` if it does not exist.
     #[inline(never)]
     pub(super) fn strung(&self, poses: &Poses, tendon: usize, piece: usize) -> Option<(Self, Vec3, Mat3)> {
         let (first, count) = (*poses.ten_wrapadr.get(tendon)?, *poses.ten_wrapnum.get(tendon)?);
@@ -113,7 +113,7 @@ fn hanging(from: Vec3, to: Vec3, rope: Vec3, piece: usize) -> Option<[Vec3; 2]> 
         return (piece == 0).then_some([from, to]);
     }
     let place = |x: f64, y: f64| add_scaled(add_scaled(from, across, x), up, y);
-    // the length across: its square is that of the whole less that of the rise
+    // the horizontal length: its square is that of the length less that of the rise
     let taut = (length * length - rise * rise).sqrt();
     if width < NARROW * length {
         let down = 0.5 * ((length * length - width * width).sqrt() - rise);

@@ -215,7 +215,7 @@ impl<'a> TextureLoader<'a> {
     /// Checks the texture of a drawable that is blended.
     ///
     /// # Errors
-    /// Its image is read with opacities, by which MuJoCo multiplies there, and has some.
+    /// Fails if its image is read with opacities, by which MuJoCo multiplies there, and has some.
     pub fn blended(&self, recipe: &Recipe) -> Result<(), RenderError> {
         let (4, Some(path)) = (recipe.channels, &recipe.file) else {
             return Ok(());
@@ -277,7 +277,7 @@ impl<'a> TextureLoader<'a> {
         Ok(TexturePixels::Cube(Cube::new(faces)))
     }
 
-    /// Counts pixels of a texture, before time and memory are spent on them; the error says that they are too many.
+    /// Counts the pixels of a texture before time and memory are spent on them. Fails if there are too many.
     fn take(&mut self, pixels: usize) -> Result<(), String> {
         let Some(left) = self.left.checked_sub(pixels) else {
             let most = Limits::DEFAULT.texture_pixels;
@@ -300,7 +300,7 @@ impl<'a> TextureLoader<'a> {
         Ok(face)
     }
 
-    /// Decodes an image as it is, mirrored.
+    /// Decodes an image without mip levels, mirrored as requested.
     fn level(&mut self, path: &str, flip: [bool; 2]) -> Result<MipLevel, RenderError> {
         let bytes = self.assets.read(path)?;
         let mut level = decode(path, &bytes)?;

@@ -47,7 +47,7 @@ impl View {
     }
 }
 
-/// A camera that looks at a point from anywhere, as MuJoCo's `mjvCamera`: the one that people steer.
+/// A camera that looks at a point from anywhere, like MuJoCo's `mjvCamera`: the one that users move.
 ///
 /// ```
 /// use mjcf_sim::render::FreeCamera;
@@ -86,7 +86,7 @@ impl FreeCamera {
     /// Returns position (m) and orientation in the world.
     ///
     /// # Errors
-    /// Numbers that are not finite.
+    /// Fails if a number is not finite.
     pub fn pose(&self) -> Result<(Vec3, Mat3), RenderError> {
         let [x, y, z] = self.lookat;
         if ![x, y, z, self.distance, self.azimuth, self.elevation]
@@ -123,7 +123,7 @@ pub struct Poses<'a> {
     pub site_xmat: &'a [Mat3],
     /// First point of each tendon in `wrap_xpos`.
     pub ten_wrapadr: &'a [usize],
-    /// Number of points of each tendon; none for fixed ones.
+    /// Number of points of each tendon; 0 for fixed ones.
     pub ten_wrapnum: &'a [usize],
     /// Points that spatial tendons run through.
     pub wrap_xpos: &'a [Vec3],
@@ -185,13 +185,13 @@ pub struct ImageBuffers<'a> {
 }
 
 impl<'a> ImageBuffers<'a> {
-    /// Asks for an image in colour alone.
+    /// Requests an image in colour alone.
     pub fn rgb(out: &'a mut [u8]) -> Self {
         let rgb = Some(out);
         Self { rgb, ..Self::default() }
     }
 
-    /// Asks for a gray image alone.
+    /// Requests a gray image alone.
     pub fn gray(out: &'a mut [u8]) -> Self {
         let gray = Some(out);
         Self {
@@ -200,7 +200,7 @@ impl<'a> ImageBuffers<'a> {
         }
     }
 
-    /// Asks for depth alone.
+    /// Requests depth alone.
     pub fn depth(out: &'a mut [f32]) -> Self {
         let depth = Some(out);
         Self {
@@ -209,7 +209,7 @@ impl<'a> ImageBuffers<'a> {
         }
     }
 
-    /// Asks for geom ids alone.
+    /// Requests geom ids alone.
     pub fn segmentation(out: &'a mut [i32]) -> Self {
         let segmentation = Some(out);
         Self {

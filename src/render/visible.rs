@@ -101,7 +101,7 @@ fn visible<'a>(model: &'a Model, ropes: &'a [Vec3]) -> impl Iterator<Item = Elem
     parts.chain(flexes(model)).chain(skins.map(Element::Skin))
 }
 
-/// Lists the visible flexes: the edges of those of lines, which without a radius are not drawn, before all others.
+/// Lists the visible flexes: first the edges of flexes of lines, which are not drawn without a radius, then the others.
 fn flexes(model: &Model) -> impl Iterator<Item = Element> + '_ {
     let visible = || (0..model.nflex()).filter(|&f| VISIBLE_GROUPS.contains(&model.flexes[f].group));
     let lines = visible().filter(|&f| model.flexes[f].dim == 1 && model.flexes[f].radius > 0.0);
@@ -120,7 +120,7 @@ pub(super) struct UsedTextures<'a> {
 }
 
 impl UsedTextures<'_> {
-    /// Returns the place of a texture, which is loaded when it is first asked for; `None` without a loader.
+    /// Returns the place of a texture, which is loaded on first use; `None` without a loader.
     pub fn texture(&mut self, id: usize) -> Result<Option<usize>, RenderError> {
         let (Some(recipe), Some(loader)) = (self.model.textures.get(id), &mut self.loader) else {
             return Ok(None);

@@ -89,7 +89,7 @@ class Core:
         self.layout = self._proprioception_layout() if self.whole else {}
 
     def _is_whole(self) -> bool:
-        """Returns whether the engine drives and senses all joints and actuators with MIMo's prefixes; other bodies may use them."""
+        """Returns whether the engine drives and senses all elements with MIMo's prefixes; other bodies may use these, too."""
         motors = sum(name.startswith("act:") for name in self.names["actuator"])
         torques = 3 * sum(name.startswith("proprio:") for name in self.names["sensor"])
         per_motor, seen = {"spring_damper": (1, 2), "muscle": (2, 4), "positional": (1, 1)}[

@@ -31,8 +31,8 @@ pub fn unit(a: Vec3f) -> Vec3f {
     [a[0] * scale, a[1] * scale, a[2] * scale]
 }
 
-/// Computes `a b + c` rounded once, like the fused instruction that llvmpipe uses: the product is exact. (But for one
-/// case in 2^29, in which the sum is rounded twice.)
+/// Computes `a b + c` rounded once, like the fused instruction that llvmpipe uses: the product is exact. (In one case in
+/// 2^29, the sum is rounded twice.)
 #[inline(always)]
 pub fn fused(a: f32, b: f32, c: f32) -> f32 {
     (f64::from(a) * f64::from(b) + f64::from(c)) as f32
@@ -60,20 +60,18 @@ impl ViewCamera {
     pub fn new(scenery: &Scenery, poses: &Poses, view: &View) -> Self {
         let (place, mat) = poses.camera(view.camera).unwrap_or(([0.0; 3], MAT3_ID));
         let mat = &mat;
-        // MuJoCo places two eyes in single precision, even where it draws one picture, and averages them: the camera
-        // comes out up to a rounding beside where it was put
+        // MuJoCo places two eyes in single precision, even where it draws one picture, and averages them: this moves the
+        // camera by up to one rounding
         let aside = column(mat, 0);
         let side = |sign: f64| [0, 1, 2].map(|i| (place[i] + sign * EYE_DISTANCE * 0.5 * aside[i]) as f32);
         let (left, right) = (side(-1.0), side(1.0));
         let pos = [0, 1, 2].map(|i| ((f64::from(left[i]) + f64::from(right[i])) * 0.5) as f32);
         let doubled = |v: Vec3| single(v).map(|x| f64::from(x) + f64::from(x));
-        // the directions of both eyes added, as MuJoCo does before it makes them unit vectors: equal ones double
-        // without rounding
+        // MuJoCo adds the directions of both eyes before it normalizes them: equal ones double without rounding
         let ahead = crate::math::unit(doubled(column(mat, 2).map(|v| -v))).0;
         let upward = doubled(column(mat, 1));
         let along = crate::math::dot(upward, ahead);
-        // made perpendicular to the direction of view by Gram and Schmidt, in double precision, from where it is
-        // single again
+        // made perpendicular to the direction of view by Gram and Schmidt, in double precision, then single again
         let upward = crate::math::unit([0, 1, 2].map(|i| upward[i] - along * ahead[i])).0;
 
         let forward = unit(single(ahead));
@@ -82,7 +80,7 @@ impl ViewCamera {
         let (near, far) = (scenery.near as f32, scenery.far as f32);
         let tangent = pxfm::f_tan(scenery.fovy_of(view.camera) * std::f64::consts::PI / 360.0);
         let top = (f64::from(near) * tangent) as f32;
-        // the width follows from the height, as `glFrustum` wants it: the field of view of a camera is vertical, but where it has a lens
+        // the width follows from the height, as in `glFrustum`: the field of view is vertical unless the camera has a lens
         let half_width = match scenery.half_width_of(view.camera) {
             Some(half) => (f64::from(near) * half) as f32,
             None => 0.5 * view.width as f32 / view.height as f32 * (top + top),

@@ -190,9 +190,9 @@ impl Polygon {
     }
 }
 
-/// Returns whether a triangle certainly faces away from the camera, so that nothing of it can be seen.
+/// Returns whether a triangle certainly faces away from the camera and is therefore invisible.
 pub fn faces_away(&[a, b, c]: &[ClipVertex; 3]) -> bool {
-    // far above single precision: what is nearly edge-on is left to the rasteriser, whose integers decide exactly
+    // far above rounding: triangles that are nearly edge-on are left to the rasteriser, whose integers decide exactly
     const CLEAR: f32 = 1e-3;
     // the triple product of (x, y, w) tells which side is in front without a division, also where a corner is behind
     // the camera (Olano and Greer, "Triangle Scan Conversion using 2D Homogeneous Coordinates", Graphics Hardware 1997)

@@ -61,8 +61,8 @@ impl CubePoints {
         // a zero direction has no side; any colour will do
         let least = f32x4::splat(f32::MIN_POSITIVE);
         let inverse = f32x4::ONE / ma.simd_gt(least).select(ma, least);
-        // OpenGL's coordinates on a face are (sc / ma + 1) / 2: the half is in both, the 1/2 is added where they are
-        // used
+        // OpenGL's coordinates on a face are (sc / ma + 1) / 2: `half` includes the factor, the summand 1/2 is added where
+        // they are used
         let half = 0.5 * inverse;
         let scale = half * f32x4::splat(whole(cube.faces[0][0].width));
         let length = |change: fn(f32x4) -> f32x4| {
@@ -88,7 +88,7 @@ impl CubePoints {
         let face = &cube.faces[usize::from(self.side[0])];
         let level = self.detail.level.to_array()[0] as usize;
         let image = &face[level];
-        // copies, which keep what they are made of in registers on the other way
+        // copies, so that the originals stay in registers on the other path
         let beyond = |level: usize, spots: CubeTexels| {
             let points = *self;
             points.beyond(cube, [level; 4], &spots, wanted)
@@ -227,7 +227,7 @@ impl Axes {
             // at equal lengths z wins over x and y, and y over x, as in llvmpipe, so that what lies on an edge of the
             // cube is on the same face there
             upright: z.abs().simd_ge(longer.select(along_x, along_y)).to_bitmask(),
-            // a mask of bits is made of signs
+            // the bit mask is made of signs
             negative: [x, y, z].map(|v| v.to_bitmask()),
         }
     }

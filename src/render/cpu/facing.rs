@@ -38,7 +38,7 @@ pub struct PartCamera {
 }
 
 impl LocalCamera {
-    /// Locates the camera; `None` where the drawable is flat or a mesh of the model, or comes so near that it may be cut.
+    /// Locates the camera; `None` if the drawable is flat or a mesh of the model, or so near that it may be cut.
     pub fn new(drawable: &Drawable, draw: &PlacedDrawable, eye: &ViewCamera, image: [usize; 2]) -> Option<Self> {
         let d = [
             eye.pos[0] - draw.pos[0],

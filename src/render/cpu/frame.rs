@@ -35,7 +35,7 @@ pub struct Frame {
     pub sides: Vec<u8>,
     /// For each patch of the drawable being drawn, one bit for each quadrilateral that may show its front.
     pub fronts: Vec<u8>,
-    /// For each group of vertices of the drawable being drawn, whether a quadrilateral of these has one.
+    /// For each group of vertices of the drawable being drawn, whether such a quadrilateral uses one.
     pub needed: Vec<bool>,
     /// Triangles of the drawable being drawn that are still to be rasterised.
     pub waiting: TriangleGroup,
@@ -190,7 +190,7 @@ impl Frame {
         let draw = &mut self.draws[index];
         draw.flip = plane && dot(d, [mat[2], mat[5], mat[8]]) < 0.0;
         draw.alpha = drawable.rgba[3];
-        // a plane is seldom in front, and its centre says nothing of how near it comes
+        // a plane is seldom in front, and its centre does not tell how near it comes
         let far = if plane { f32::MAX } else { ahead - drawable.radius };
         if draw.alpha < OPAQUE || draw.flip {
             if draw.flip {
@@ -260,7 +260,7 @@ impl Frame {
     fn hidden(&self, drawable: &Drawable, eye: &ViewCamera, pos: Vec3f) -> bool {
         let [x, y, z] = eye.locate(pos);
         let r = drawable.radius;
-        // part of it is before the near plane, where the tangents below have no meaning
+        // part of it is in front of the near plane, where the tangents below have no meaning
         if z - r <= eye.near {
             return false;
         }

@@ -49,8 +49,7 @@ impl TriangleGroup {
         self.count = 0;
     }
 
-    /// Passes on the triangles in the order in which they came, but for those that certainly cover no sample of an image of this
-    /// size.
+    /// Passes on the triangles in their order, except for those that certainly cover no sample of an image of this size.
     #[inline(always)]
     pub fn each<S: Sampling>(&self, size: [usize; 2], mut each: impl FnMut([usize; 3], DrawMethod)) {
         if self.count == 0 {
@@ -62,7 +61,7 @@ impl TriangleGroup {
                 f32x4::new([x, y, z, iw])
             }))
         });
-        // rounded once more, which costs less than to collect what was rounded
+        // rounded once more, which costs less than collecting the rounded values
         let (x, y) = (
             three(|k| to_fixed_point(corners[k][0])),
             three(|k| to_fixed_point(corners[k][1])),
@@ -198,7 +197,7 @@ impl LaneEdges {
         })
     }
 
-    /// Returns of each edge the changes to the right and upward, negated the first, and the value at the corner of the first pixel.
+    /// Returns for each edge the changes to the right (negated) and upward, and the value at the corner of the first pixel.
     #[inline(always)]
     fn at_pixels(&self, [x, y]: &[Extent; 2]) -> [[[f32; 4]; 3]; 3] {
         let (right, up) = (f32x4::from_i32x4(x.pixel) - x.low, f32x4::from_i32x4(y.pixel) - y.low);

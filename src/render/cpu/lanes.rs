@@ -1,5 +1,5 @@
 //! Arrays of three and four elements built without a loop (`array::map` with a closure that may panic is a call for each
-//! array, which costs more than the work itself), and lane operations that are cheaper where more is known of the numbers
+//! array, which costs more than the work itself), and lane operations that are cheaper where more is known about the numbers
 //! than `wide` can assume.
 
 use wide::bytemuck::cast;
@@ -19,8 +19,8 @@ pub fn four<T>(mut of: impl FnMut(usize) -> T) -> [T; 4] {
 
 /// Returns `v` where it is above `low`, which must be a number, and `low` elsewhere, including where `v` is NaN.
 ///
-/// [`f32x4::max`] looks for NaN on either side, at five instructions more than these, of which it is known what they do with
-/// NaN on one side.
+/// [`f32x4::max`] checks both sides for NaN, which takes five more instructions. The instructions here have a defined result
+/// for NaN on one side.
 #[inline(always)]
 pub fn at_least(v: f32x4, low: f32x4) -> f32x4 {
     if cfg!(target_arch = "wasm32") {
@@ -40,18 +40,18 @@ pub fn at_least(v: f32x4, low: f32x4) -> f32x4 {
 #[inline(always)]
 pub fn integers(v: f32x4) -> i32x4 {
     if cfg!(target_arch = "wasm32") {
-        // the last bits of a sum with 1.5 * 2^23 are the other number
+        // the last bits of a sum with 1.5 * 2^23 are the other summand
         cast::<_, i32x4>(v + 12_582_912.0) - i32x4::splat(0x4b40_0000)
     } else {
         v.fast_trunc_int()
     }
 }
 
-/// Rounds numbers between 0 and 2^20 down that are whole quarters.
+/// Rounds down numbers between 0 and 2^20 that are whole quarters.
 #[inline(always)]
 pub fn rounded_down(quarters: f32x4) -> i32x4 {
     if cfg!(target_arch = "wasm32") {
-        // the nearest integer is that below
+        // this makes the nearest integer the one below
         integers(quarters - 0.375)
     } else {
         quarters.fast_trunc_int()

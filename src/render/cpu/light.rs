@@ -82,7 +82,7 @@ fn pose(light: &LightSource, poses: &Poses) -> (Option<Vec3>, Vec3) {
 /// Four vectors, by component.
 pub type Vec3x4 = [f32x4; 3];
 
-/// Four vertices of a unit shape: parts, places, normals.
+/// Four vertices of a unit shape: parts, positions, normals.
 pub struct VertexGroup {
     pub part: [MeshPart; 4],
     pub at: Vec3x4,
@@ -134,7 +134,7 @@ pub fn vertices(
         normal[1] * (stretch * size[0]),
         normal[2] * (size[0] * size[1]),
     ]));
-    // only highlights depend on where one looks from
+    // only highlights depend on the point of view
     let to_eye = if drawable.specular > 0.0 {
         units(&three(|k| f32x4::splat(eye[k]) - p[k]))
     } else {

@@ -10,7 +10,7 @@ use crate::drawable::Drawable;
 use crate::lattice::Lattice;
 use crate::mesh::MeshPart;
 
-/// A plane that is seen.
+/// A visible plane.
 #[derive(Clone, Copy, Debug)]
 pub struct LitPlane {
     /// Index of the drawable.
@@ -33,7 +33,7 @@ impl LitPlane {
         })
     }
 
-    /// Returns the colours at four places on the plane, m; those that are not `wanted` may be any.
+    /// Returns the colours at four places on the plane, m; those that are not `wanted` are unspecified.
     pub fn colours(&self, lights: &[PlacedLight], x: f32x4, y: f32x4, wanted: [bool; 4]) -> Vec3x4 {
         let (x, y) = (x.to_array(), y.to_array());
         let mut colours = [[0.0; 4]; 3];

@@ -75,8 +75,7 @@ impl CpuRenderer {
         view: &View,
         images: ImageBuffers<'_>,
     ) -> Result<(), RenderError> {
-        // before anything is drawn, so that a buffer of a wrong length costs nothing and leaves the others as they
-        // are
+        // checked before anything is drawn, so that a buffer of a wrong length costs nothing and the others do not change
         images.check(view)?;
         self.passes += 1;
         let ImageBuffers {
@@ -107,8 +106,7 @@ impl CpuRenderer {
             });
         }
         if targets.colour {
-            // gray is made of the rounded bytes of the colour, so that it is the same whether both are asked for or
-            // one
+            // gray is computed from the rounded bytes of the colour, so that it is the same whether one or both are requested
             let colours = match rgb {
                 Some(out) => out,
                 None => {
@@ -150,7 +148,7 @@ impl CpuRenderer {
         view: &View,
         out: &mut [u8],
     ) -> Result<(), RenderError> {
-        // the whole image is rasterised: half of it drawn small would have other samples
+        // the whole image is rasterised: an image of half the size would have other samples
         let half = View {
             width: view.width.div_ceil(2),
             height: view.height.div_ceil(2),

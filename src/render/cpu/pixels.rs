@@ -14,7 +14,7 @@ impl Pixels {
     #[inline(always)]
     pub fn write(self, out: &mut [u8], [w, h]: [usize; 2], [x, y]: [usize; 2], colours: &[[u8; 4]; 4]) {
         if self == Self::All && x + 1 < w && y + 1 < h {
-            // nearly every block: two pixels at once, and no questions for each
+            // nearly every block: two pixels at once, without a check for each
             for (up, pair) in colours.as_chunks().0.iter().enumerate() {
                 let [left, right] = pair.map(|c| u64::from(u32::from_le_bytes(c)));
                 let at = 3 * ((h - 1 - y - up) * w + x);

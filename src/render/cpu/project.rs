@@ -45,7 +45,7 @@ impl Frame {
                     self.inside(mesh, index, band);
                 }
                 _ => match self.project_all(mesh, draw.base, band.vertices.clone(), &rows) {
-                    // the box was cut, the vertices are not
+                    // the box crosses a plane, but no vertex is beyond one
                     (0, _) if !draw.flip => self.inside(mesh, index, band),
                     (_, 0) => self.across(mesh, &rows, index, band),
                     _ => {}

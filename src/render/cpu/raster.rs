@@ -128,7 +128,7 @@ impl DepthFunction {
     #[inline(always)]
     pub fn at<S: Sampling>(&self, x: i32, y: i32) -> f32x4 {
         let (x, y) = (x as f32, y as f32);
-        // the sum of two parts would round steep planes otherwise than llvmpipe, which evaluates at each sample's own
+        // the sum of two parts would round steep planes unlike llvmpipe, which evaluates at each sample's own
         // place
         let z = if self.gentle {
             f32x4::splat(self.plane.quick(x, y)) + self.spread

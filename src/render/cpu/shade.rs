@@ -22,7 +22,7 @@ use crate::view::Poses;
 pub struct Shader {
     seen: VisibleTriangles,
     rays: Rays,
-    /// The shading of each triangle that is seen.
+    /// The shading of each visible triangle.
     setups: Vec<TriangleSetup>,
     /// The planes among them that are lit on a lattice.
     planes: Vec<LitPlane>,
@@ -30,7 +30,7 @@ pub struct Shader {
     samples: Vec<[f32x4; 4]>,
 }
 
-/// Number of samples by their bits.
+/// Number of samples by bit mask.
 const COUNT: [f32; 16] = [
     0.0, 1.0, 1.0, 2.0, 1.0, 2.0, 2.0, 3.0, 1.0, 2.0, 2.0, 3.0, 2.0, 3.0, 3.0, 4.0,
 ];
@@ -38,14 +38,14 @@ const COUNT: [f32; 16] = [
 /// The shading of a triangle: its colour and texture coordinates as linear functions.
 #[derive(Clone, Copy, Debug)]
 struct TriangleSetup {
-    /// Colour, divided by w; of a plane that is lit on a lattice the place on it.
+    /// Colour, divided by w; for a plane that is lit on a lattice, the place on it.
     colour: Planes,
     texture: Planes,
     /// Factor on red, green and blue.
     tint: [f32; 3],
     /// Index of the texture, or [`NONE`].
     image: u32,
-    /// Index of the plane that it is of, if that is lit on a lattice, or [`NONE`].
+    /// Index of its plane, if that is lit on a lattice, or [`NONE`].
     plane: u32,
 }
 
@@ -232,7 +232,7 @@ fn by_pixel(&[r, g, b]: &Vec3x4) -> [f32x4; 4] {
     f32x4::transpose([r, g, b, f32x4::ZERO])
 }
 
-/// Lays a colour over one in bytes.
+/// Blends a colour over one in bytes.
 fn blend(under: f32x4, over: f32x4, alpha: f32) -> f32x4 {
     let over = at_least(over, f32x4::ZERO).fast_min(f32x4::ONE);
     rounded(over * f32x4::splat(alpha) + under / f32x4::splat(255.0) * f32x4::splat(1.0 - alpha))
@@ -245,7 +245,7 @@ impl TriangleSetup {
         let basis = Basis::new(vertices);
         // Over the image, not the values but the values over w are linear. The fourth lane is 1, so it becomes 1 / w,
         // by which the others are divided at each pixel.
-        // one reciprocal a vertex, from the projection
+        // one reciprocal per vertex, from the projection
         let iw = three(|k| f32x4::splat(vertices[k].iw));
         let over = |of: [f32x4; 3]| Planes::new(&basis, three(|k| of[k] * iw[k]), vertices[0].iw, frame.size);
         let mut setup = Self {

@@ -63,8 +63,7 @@ impl VisibilityBuffer {
 
     /// Returns whether every sample in a range of pixels is nearer than the depth `z`.
     pub fn hides(&self, x: std::ops::Range<usize>, y: std::ops::Range<usize>, z: f32) -> bool {
-        // every sample, not the farthest of a coarser grid: what is hidden by a hair is still not drawn, and nothing
-        // that shows is left out
+        // every sample, not the farthest of a coarser grid: everything hidden is left out, however close, and nothing visible
         y.into_iter().all(|row| {
             let row = &self.depth[row * self.width..][x.clone()];
             row.iter()

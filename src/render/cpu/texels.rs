@@ -52,7 +52,7 @@ impl MipBlend {
 /// Converts a number of texels or levels.
 #[inline(always)]
 pub fn whole(count: usize) -> f32 {
-    // an instruction, where one for all 64 bits without a sign takes two ways
+    // one instruction, where the conversion of unsigned 64 bits needs a branch
     count as i32 as f32
 }
 
@@ -112,7 +112,7 @@ pub fn gather_squares(level: &MipLevel, places: [i32; 4]) -> [u32x4; 4] {
 /// Returns whether all of these texels are [`SETTLED`].
 #[inline(always)]
 pub fn are_settled(texels: u32x4) -> bool {
-    // the mark travels in the byte of opacity, which textures here do not use: it costs no memory access
+    // the mark is stored in the byte of opacity, which textures here do not use: it costs no memory access
     let marks = texels & u32x4::splat(0xff00_0000);
     marks.simd_eq(u32x4::splat(u32::from(SETTLED) << 24)).to_bitmask() == 15
 }

@@ -19,7 +19,7 @@ impl Frame {
     /// Draws a band that is not wholly in view.
     pub fn across(&mut self, mesh: &Mesh, rows: &[AffineRow; 4], index: usize, band: &Band) {
         let triangles = &mesh.triangles[band.triangles.clone()];
-        // corners of strips stand for triangles that are wound as in the mesh
+        // strips describe triangles that are wound as in the mesh
         let (loose, strips): (_, &[Strip]) = if self.draws[index].flip {
             (triangles.len(), &[])
         } else {
@@ -114,7 +114,7 @@ impl Frame {
     #[inline(always)]
     fn quadrilaterals(&mut self, index: usize, strip: &Strip, k: usize) {
         let fronts = u32::from(self.fronts[strip.patch + k]);
-        // they are skipped at once, and their vertices may not even be projected
+        // back faces are skipped at once, and their vertices may not even be projected
         if fronts == 0 {
             return;
         }

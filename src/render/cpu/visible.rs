@@ -31,7 +31,7 @@ pub struct VisibleTriangles {
 /// A lit vertex of a visible triangle.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct LitVertex {
-    /// Red, green, blue, 1; of a plane with a [`Lattice`](crate::lattice::Lattice) the place on it, m, 0, 1.
+    /// Red, green, blue, 1; for a plane with a [`Lattice`](crate::lattice::Lattice), the place on it, m, 0, 1.
     pub colour: f32x4,
     /// Texture coordinates, 0.
     pub texture: f32x4,
@@ -55,7 +55,7 @@ impl LitVertex {
             at,
             normal: three(|k| lanes(&|i| mesh.normal[i][k])),
         };
-        // of a plane that is lit on a lattice, what is interpolated is the place on it
+        // on a plane that is lit on a lattice, the place is interpolated
         let [r, g, b] = match drawable.lattice {
             Some(_) => [at[0] * drawable.size[0], at[1] * drawable.size[1], f32x4::ZERO],
             None => light::vertices(lights, drawable, draw, eye.pos, &corners),
@@ -75,16 +75,16 @@ impl LitVertex {
     }
 }
 
-/// Returns for how many vertices to make room: five eighths of those for which the frame has room, as long as they do.
+/// Returns the number of vertices to reserve: five eighths of the frame's capacity if its vertices fit, else all.
 fn room(frame: &Frame) -> usize {
     let all = frame.vertices.capacity();
-    // most of a frame's vertices belong to back faces or to what is occluded; room for all would seldom be used
+    // most of a frame's vertices belong to back faces or are occluded; room for all would seldom be used
     let most = all / 8 * 5;
     if frame.vertices.len() <= most { most } else { all }
 }
 
 impl VisibleTriangles {
-    /// Returns the light on a vertex that is seen.
+    /// Returns the light on a visible vertex.
     #[inline(always)]
     pub fn lit(&self, vertex: u32) -> &LitVertex {
         &self.lit[self.lit_of[vertex as usize] as usize]
@@ -94,7 +94,7 @@ impl VisibleTriangles {
     pub fn find(&mut self, frame: &mut Frame, scenery: &Scenery, poses: &Poses, eye: &ViewCamera, pixels: Pixels) {
         // once an image, not once a drawable: no light depends on what it shines on
         light::place(scenery, poses, eye, &mut self.lights);
-        // what is seen grows with what is drawn, not later; a sample shows one triangle
+        // reserved with the frame's capacity, so that it does not grow later; a sample shows one triangle
         let samples = 4 * frame.colour.ids.len() + frame.colour.fragments.capacity();
         self.triangles.clear();
         self.triangles

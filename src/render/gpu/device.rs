@@ -20,7 +20,7 @@ pub struct Gpu {
 
 #[derive(Debug, Default)]
 struct DeviceErrors {
-    /// The first error since the last check of each thread: several may share the device, and errors come up in the thread that
+    /// The first error since the last check of each thread: threads may share the device, and errors appear in the thread that
     /// caused them.
     first: HashMap<ThreadId, GpuError>,
     lost: Option<String>,
@@ -29,9 +29,8 @@ struct DeviceErrors {
 impl Gpu {
     /// Opens the best adapter: a GPU before software, OpenGL last among equals. `WGPU_BACKEND` and `WGPU_ADAPTER_NAME` narrow the choice.
     ///
-    /// All that open one in a process share it, until it is lost. Not to save time alone: NVIDIA's drivers (580.159) wait for ever when a device
-    /// is closed while another thread that has used Vulkan ends, and Mesa 22.3's llvmpipe has ended the process while two devices were
-    /// at work.
+    /// A process opens one and shares it until it is lost. This does not only save time: NVIDIA's drivers (580.159) hang when a device is
+    /// closed while another thread that has used Vulkan ends, and Mesa 22.3's llvmpipe crashed the process while two devices were in use.
     #[cfg(not(target_arch = "wasm32"))]
     pub async fn open() -> Result<Self, GpuError> {
         static SHARED: Mutex<Option<(Option<String>, Gpu)>> = Mutex::new(None);
@@ -40,14 +39,14 @@ impl Gpu {
         match &*shared {
             Some((name, gpu)) if *name == wanted && lock(&gpu.faults).lost.is_none() => Ok(gpu.clone()),
             _ => {
-                // those who wait for the same device wait for all of this; outside of browsers nothing in it is put off
+                // callers that need the same device wait for all of this; outside browsers it never suspends
                 let gpu = pollster::block_on(Self::open_own(wanted.as_deref()))?;
                 Ok(shared.insert((wanted, gpu)).1.clone())
             }
         }
     }
 
-    /// As above. Browsers give each its own.
+    /// As above. In browsers each caller gets its own.
     #[cfg(target_arch = "wasm32")]
     pub async fn open() -> Result<Self, GpuError> {
         Self::open_own(None).await
@@ -131,10 +130,10 @@ fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Returns the door to the system's graphics drivers, and which of them are looked for.
+/// Returns the instance that opens the system's graphics drivers, and the backends that it searches.
 ///
-/// There is one in a process: drivers, above all those of OpenGL, are not made to be opened in one thread while they are closed in
-/// another, and opening them is most of the time that a renderer takes to start.
+/// A process has one: drivers, above all those of OpenGL, do not support being opened in one thread while they are closed in
+/// another, and opening them takes most of a renderer's start time.
 #[cfg(not(target_arch = "wasm32"))]
 fn instance() -> (wgpu::Instance, wgpu::Backends) {
     static SHARED: std::sync::OnceLock<(wgpu::Instance, wgpu::Backends)> = std::sync::OnceLock::new();
@@ -153,7 +152,7 @@ fn new_instance() -> (wgpu::Instance, wgpu::Backends) {
     (wgpu::Instance::new(description), backends)
 }
 
-/// Lists the adapters in whose name is `wanted`, the best first.
+/// Lists the adapters whose names contain `wanted`, the best first.
 async fn adapters(instance: &wgpu::Instance, backends: wgpu::Backends, wanted: Option<&str>) -> Vec<wgpu::Adapter> {
     #[cfg(not(target_arch = "wasm32"))]
     let mut found = enumerated(instance, backends);
@@ -178,10 +177,10 @@ async fn adapters(instance: &wgpu::Instance, backends: wgpu::Backends, wanted: O
     found
 }
 
-/// Lists the adapters of this process, those of OpenGL only where nothing else has a GPU.
+/// Lists the adapters of this process, those of OpenGL only if nothing else has a GPU.
 ///
-/// They are looked for once: each time that wgpu looks, it wraps the same context of OpenGL in a lock of its own, and it panics
-/// where the driver, as NVIDIA's, refuses a context that is at work in another thread.
+/// They are searched once. Each search by wgpu wraps the same OpenGL context in a new lock, and it panics if the driver, like
+/// NVIDIA's, refuses a context that is in use in another thread.
 #[cfg(not(target_arch = "wasm32"))]
 fn enumerated(instance: &wgpu::Instance, backends: wgpu::Backends) -> Vec<wgpu::Adapter> {
     static FOUND: Mutex<Vec<wgpu::Adapter>> = Mutex::new(Vec::new());

@@ -1,6 +1,6 @@
 //! The errors of rendering on a GPU.
 
-/// A reason why images cannot be drawn on a GPU. None of it concerns the CPU renderer (`renderer: cpu`).
+/// A reason why images cannot be drawn on a GPU. None of them concerns the CPU renderer (`renderer: cpu`).
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum GpuError {

@@ -191,7 +191,7 @@ impl SubmissionData {
             // depth and segmentation have no blending: transparent drawables are drawn like the others
             let blended = drawable.rgba[3] < OPAQUE || behind(eye, drawable, single(pos), &mat);
             if blended && r.output == Output::Colour {
-                // a plane's centre says nothing of its distance; it goes behind the rest
+                // a plane's centre does not tell its distance; it is sorted behind the rest
                 let key = if drawable.shape == Shape::Plane {
                     f32::INFINITY
                 } else {
@@ -305,7 +305,7 @@ fn behind(eye: &ViewCamera, drawable: &Drawable, pos: Vec3f, mat: &crate::math::
     drawable.shape == Shape::Plane && dot(d, [mat[2] as f32, mat[5] as f32, mat[8] as f32]) < 0.0
 }
 
-/// Returns the attributes of an instance; `None` for a piece of a tendon that is not there.
+/// Returns the attributes of an instance; `None` for a piece of a tendon that does not exist.
 fn instance(r: &Submission, eye: &ViewCamera, view: usize, drawable: &Drawable, own: bool) -> Option<[f32; INSTANCE]> {
     let (drawable, pos, mat) = drawable.placed(&r.requests[view].poses)?;
     let drawable = &drawable;

@@ -164,7 +164,7 @@ impl GpuRenderer {
         self.submissions
     }
 
-    /// Starts drawing. Submissions are worked off in order; more can be started before earlier ones are read.
+    /// Starts drawing. Submissions are processed in order; more can be started before earlier ones are read.
     ///
     /// # Errors
     /// Fails like the CPU renderer for each request, if there are more images than the device takes, or if the device is
@@ -218,7 +218,7 @@ impl GpuRenderer {
         self.begin::<C>(requests)?.wait()
     }
 
-    /// Makes sure of attachments for all chunks and returns their size.
+    /// Ensures that there are attachments for all chunks, and returns their size.
     fn target(&mut self, output: Output, atlas: &Atlas) -> [u32; 2] {
         let slot = &mut self.targets[output as usize];
         let most = |k: usize| atlas.chunks.iter().map(|c| c[k]).max().unwrap_or(1);

@@ -38,7 +38,7 @@ struct Transfer {
     #[cfg_attr(target_arch = "wasm32", allow(dead_code))] // browsers cannot wait
     submission: wgpu::SubmissionIndex,
     arrival: Arc<Mutex<MapStatus>>,
-    /// Told when the arrival is there.
+    /// Notified when the buffer has arrived.
     #[cfg_attr(target_arch = "wasm32", allow(dead_code))] // browsers cannot wait
     told: Arc<Condvar>,
     pool: BufferPool,
@@ -96,7 +96,7 @@ impl<C: Channel> Pending<C> {
         }
     }
 
-    /// Asks for the contents of a buffer that a submission fills.
+    /// Requests the contents of a buffer that a submission fills.
     pub(super) fn new(
         gpu: &Gpu,
         slots: Vec<Slot>,
@@ -263,7 +263,7 @@ impl Future for MapFuture<'_> {
             None => {
                 arrival.waker = Some(context.waker().clone());
                 drop(arrival);
-                // WebGPU tells when the buffer is there, but WebGL2 and native devices only when they are polled
+                // WebGPU reports when the buffer is ready, but WebGL2 and native devices only when they are polled
                 #[cfg(not(target_arch = "wasm32"))]
                 context.waker().wake_by_ref();
                 #[cfg(target_arch = "wasm32")]

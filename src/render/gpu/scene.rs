@@ -22,7 +22,7 @@ pub struct DrawClass {
     pub texture: Option<usize>,
     /// Range in the buffer of indices.
     pub indices: Range<u32>,
-    /// Place among the meshes of skins, which have their vertices elsewhere, and other ones for each view.
+    /// Index among the meshes of skins, whose vertices are stored elsewhere and differ for each view.
     pub worn: Option<usize>,
 }
 

@@ -210,7 +210,7 @@ struct Sky {
     @location(0) direction: vec3f,
 }
 
-// The whole of a picture, as far away as can be.
+// The whole picture, at the farthest depth.
 @vertex
 fn background(@builtin(vertex_index) k: u32, @location(0) view: f32) -> Sky {
     let v = u32(view);

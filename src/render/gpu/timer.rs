@@ -8,7 +8,7 @@ use wasm_bindgen::{JsCast as _, JsValue};
 
 use super::map_status::MapStatus;
 
-/// Wakes the task that waits for a buffer once the event loop comes round: by `setTimeout`, which windows and workers have.
+/// Wakes the task that waits for a buffer in a later turn of the event loop: by `setTimeout`, which windows and workers have.
 pub fn later(arrival: &Arc<Mutex<MapStatus>>) {
     let arrival = arrival.clone();
     let wake = Closure::once_into_js(move || {

@@ -19,7 +19,7 @@ type FaceBorder = Vec<[u8; 4]>;
 impl Cube {
     /// Creates a cube of images, which must be squares of the same size.
     pub fn new(faces: [MipChain; 6]) -> Self {
-        // once: to compute where an edge leads takes ten times as long as a lookup within a side
+        // computed once: finding a texel beyond an edge takes ten times as long as a lookup within a side
         let rims = (0..faces[0].len())
             .map(|level| [0, 1, 2, 3, 4, 5].map(|side| rim(&faces, side, level)))
             .collect();
@@ -68,7 +68,7 @@ fn rim(faces: &[MipChain; 6], side: u8, level: usize) -> FaceBorder {
         let others = [[own_x, own_y], [x, own_y], [own_x, y]].map(texel);
         [0, 1, 2, 3].map(|c| (others.iter().map(|t| u16::from(t[c])).sum::<u16>() / 3) as u8)
     };
-    // beyond an edge lies a row or a column of one other side: its ends say where
+    // beyond an edge lies a row or a column of one other side: its ends locate it
     let line = |[[x0, y0], [x1, y1]]: [[i32; 2]; 2]| {
         let ((side, first), (_, last)) = (place(n, side, x0, y0), place(n, side, x1, y1));
         let step = (last as isize - first as isize) / (n as isize - 1).max(1);
@@ -141,7 +141,7 @@ mod tests {
     use super::*;
     use crate::texture::MipLevel;
 
-    /// A cube of which each texel says on which side, in which row and in which column it is.
+    /// A cube whose texels encode their side, row and column.
     fn atlas(n: usize) -> Cube {
         let face = |side: u8| MipLevel::from_fn(n, n, |row, column| [side, row as u8, column as u8]);
         Cube::new([0, 1, 2, 3, 4, 5].map(|side| Arc::new(vec![face(side)])))
