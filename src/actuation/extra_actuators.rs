@@ -8,11 +8,10 @@ use crate::spaces::BoxSpace;
 /// Bound of a control without a range.
 const UNLIMITED: [f64; 2] = [-1.0, 1.0];
 
-/// Drives MIMo as an actuation model does, and behind that the other actuators of the scene, each by a number of the action that is its
-/// control.
+/// Drives MIMo as an actuation model does, and the other actuators of the scene by the rest of the action, a control for each.
 ///
-/// The controls are within the range of the actuator (`ctrlrange`), or within -1 and 1 if it has none. Observed are these controls,
-/// then angle and velocity (rad, rad/s, or m, m/s) of every joint with one degree of freedom that such an actuator is on.
+/// The controls are within the range of the actuator (`ctrlrange`), or within -1 and 1 if it has none. The observation has these
+/// controls, then angle and velocity (rad, rad/s, or m, m/s) of every joint with one degree of freedom that such an actuator drives.
 pub(super) struct WithExtraActuators {
     mimo: Box<dyn Actuation>,
     space: BoxSpace,
@@ -54,7 +53,7 @@ impl WithExtraActuators {
         }
     }
 
-    /// Returns how many numbers of an action are MIMo's.
+    /// Returns the number of MIMo's values in an action.
     fn own(&self) -> usize {
         self.mimo.action_space().len()
     }

@@ -1,6 +1,6 @@
 //! From actions to joint torques.
 //!
-//! | model | action, per actuator | observed, per actuator | of the scene |
+//! | model | action, per actuator | observed, per actuator | in the scene |
 //! |---|---|---|---|
 //! | [`SpringDamperModel`] | 1: torque over gear | control, torque | motors |
 //! | [`MuscleModel`] | 2: excitations in [0, 1] | 2 activities, 2 forces | the same motors, joints without springs |
@@ -59,8 +59,8 @@ pub trait Actuation: Send + Sync {
     /// Updates the actuators before each physics step of an environment step but the first.
     fn substep(&self, model: &Model, state: &mut State);
 
-    /// Drives MIMo's actuators for a physics step by an action of the length of the space and by what reflexes command, one command for
-    /// each of [`Actuation::actuators`]. With reflexes it takes the place of [`Actuation::set_action`] and [`Actuation::substep`].
+    /// Drives MIMo's actuators for a physics step by an action of the length of the space and by the commands of reflexes, one for
+    /// each of [`Actuation::actuators`]. With reflexes it replaces [`Actuation::set_action`] and [`Actuation::substep`].
     fn drive(&self, model: &Model, state: &mut State, action: &[f32], commands: &[MotorCommand]);
 
     /// Returns the greatest torque of each of [`Actuation::actuators`] on its joint, in the negative and in the positive direction, N m.
@@ -108,7 +108,7 @@ pub fn build(model: &Model, config: &Config) -> Result<Box<dyn Actuation>, Actua
     })
 }
 
-/// Returns the name of each of some actuators with an ending.
+/// Returns the names of some actuators, each with an ending.
 fn named(model: &Model, actuators: &[usize], ending: &str) -> Vec<String> {
     let names = actuators.iter().map(|&i| &model.actuator_name[i]);
     names.map(|n| format!("{n}{ending}")).collect()

@@ -28,7 +28,7 @@ fn activate(act: f64, target: f64, h: f64) -> f64 {
 /// Before each physics step the activations ([`State::act`]) move towards the excitations ([`State::actuator_target`]),
 /// and their forces ([`State::muscle_force`]) and torques ([`State::muscle_torque`]) follow. Muscles replace the
 /// springs of MIMo's joints: stiffness is 0, damping a twentieth, and the motors' force limits are off. Excitation 0 is
-/// not torque 0, as stretched muscles pull passively.
+/// not torque 0, because stretched muscles pull passively.
 ///
 /// A reset sets all activations to 0. The torques, and the forces that are observed, are then the passive ones at the
 /// start of the episode. Under `compat: reference` the forces are those of the scene's `qpos0`, and nothing pulls until
@@ -120,7 +120,7 @@ impl MuscleModel {
         }
         self.update_forces(state);
         self.update_torques(state);
-        // controls scale the muscles' torques: the muscles pull in full
+        // controls scale the muscles' torques, which apply in full
         self.set_controls(state, 1.0);
     }
 
@@ -153,7 +153,7 @@ impl Actuation for MuscleModel {
             params.jnt_stiffness[j] = 0.0;
             params.dof_damping[d] /= DAMPING_DIVISOR;
         }
-        // motors' limits are not muscles'; theirs are in the isometric maxima
+        // the motors' limits do not apply to muscles, whose limits are in the isometric maxima
         for &i in &self.actuators {
             params.actuator_forcelimited[i] = false;
         }
@@ -185,7 +185,7 @@ impl Actuation for MuscleModel {
             let reflex = self.params[k].activities(angle, velocity, command);
             for (at, reflex) in [k, n + k].into_iter().zip(reflex) {
                 let own = f64::from(self.space.clip(at, action[at])) + reflex;
-                // where the action is suppressed, the excitation that makes the activation right at once
+                // where the action is suppressed, the excitation that reaches the activation at once
                 let exact = state.act[at] + gain * (reflex - state.act[at]);
                 let target = own * (1.0 - command.suppress) + exact * command.suppress;
                 state.actuator_target[at] = target.clamp(0.0, 1.0);

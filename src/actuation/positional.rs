@@ -60,7 +60,7 @@ impl PositionalModel {
                     actuator: actuator(),
                     what: "the range of its joint",
                     value: hi - lo,
-                    allowed: "limited and more than nothing",
+                    allowed: "limited and above 0",
                 });
             }
             low.push(lo as f32);
@@ -143,7 +143,7 @@ impl Actuation for PositionalModel {
         }
     }
 
-    /// The targets that are observed are those of the action; the servos get angles at which they pull with the reflexes' torques, too.
+    /// The observed targets are those of the action; the servos get angles at which they exert the reflexes' torques, too.
     fn drive(&self, model: &Model, state: &mut State, action: &[f32], commands: &[MotorCommand]) {
         self.set_action(model, state, action);
         for (&i, command) in self.actuators.iter().zip(commands) {

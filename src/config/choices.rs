@@ -58,15 +58,15 @@ choices! {
         /// No score; MIMo v1.
         #[default]
         None = "none",
-        /// Touching the own body with the palms; MIMo v1.
+        /// Touching his own body with the palms; MIMo v1.
         SelfTouch = "self_touch",
-        /// Looking at the own hands; MIMo v2.
+        /// Looking at his own hands; MIMo v2.
         HandRegard = "hand_regard",
         /// Reaching for a hovering ball with the right hand; MIMo v1.
         Reach = "reach",
         /// Standing up at the railing of a crib; MIMo v1.
         Standup = "standup",
-        /// Touching a part of the own body with the right hand; MIMo v1.
+        /// Touching a part of his own body with the right hand; MIMo v1.
         SelfBody = "selfbody",
         /// Catching a falling ball with the right hand; MIMo v2.
         Catch = "catch",

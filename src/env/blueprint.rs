@@ -191,7 +191,7 @@ impl Blueprint {
         let settled = SettledScene::new(&config, &*task, &engines, &*tables.actuation, &model, paths.as_deref())?;
         let identity = Arc::new(Identity::new(&model, &config));
         let params = settled.params;
-        // changes are told against it, also after several
+        // changes are listed relative to it, even after several
         let origin = UnchangedModel {
             model: model.clone(),
             params: params.clone(),
@@ -291,7 +291,7 @@ impl Blueprint {
         effective(&self.config, sense.delay(&self.config))
     }
 
-    /// Creates an engine of the kind that the configuration asks for.
+    /// Creates an engine of the kind that the configuration selects.
     pub fn engine(&self) -> Box<dyn Engine> {
         self.engines.make()
     }

@@ -60,10 +60,10 @@ pub enum EnvError {
     /// The model cannot be changed in this way.
     #[error(transparent)]
     ModelChange(#[from] ModelChangeError),
-    /// The configuration asks for the engine `rapier`, which is not part of this build.
+    /// The configuration selects the engine `rapier`, which is not part of this build.
     #[error("engine: rapier needs the cargo feature rapier: build with `--features rapier`, or use engine: soft")]
     NoRapier,
-    /// The engine that the configuration asks for cannot simulate the scene.
+    /// The engine that the configuration selects cannot simulate the scene.
     #[cfg(feature = "rapier")]
     #[error(transparent)]
     Rapier(#[from] RapierError),
@@ -105,7 +105,7 @@ pub enum EnvError {
         /// Length needed.
         expected: usize,
     },
-    /// A task in a vector changed more than [`Task::only_moves`](crate::env::Task::only_moves) allows, which tests and debug builds notice.
+    /// A task in a vector changed more than [`Task::only_moves`](crate::env::Task::only_moves) allows, which tests and debug builds detect.
     #[error(
         "the task {task:?} says that it only moves things, but a vector would return another {what} for it: return false from only_moves, \
          or change forces, controls and parameters before the physics of a step or reset, and read nothing computed before a reset"
@@ -124,7 +124,7 @@ pub enum EnvError {
         /// The subject of the change.
         what: &'static str,
     },
-    /// The spaces at an age of the schedule are not those of before.
+    /// The spaces at an age of the schedule differ from the earlier ones.
     #[error("MIMo cannot grow to {age} months by `age_schedule`: {what} would be {after} instead of {before}")]
     Spaces {
         /// The age, months.

@@ -66,7 +66,7 @@ impl Env {
         Ok(self.become_grown(grown))
     }
 
-    /// Lets MIMo grow to the age of a snapshot that was taken on his schedule. Returns the environment of before, if it changed.
+    /// Lets MIMo grow to the age of a snapshot that was taken on his schedule. Returns the previous environment, if it changed.
     pub(super) fn grow_for(&mut self, snapshot: &Snapshot, keys: &str) -> Option<Self> {
         if !self.grows() || snapshot.fingerprint() == Some(self.blueprint.identity().fingerprint) {
             return None;
@@ -91,7 +91,7 @@ impl Env {
 /// A difference between the spaces of an environment and those of others: the space, theirs, its own.
 pub(crate) type SpaceDifference = (String, String, String);
 
-/// Returns how an environment differs from those with which it is to share arrays.
+/// Returns how an environment differs from those with which it will share arrays.
 pub(crate) fn space_difference(a: &BoxSpace, spaces: &[ObservationSpace], env: &Env) -> Option<SpaceDifference> {
     let b = env.action_space();
     if a.len() != b.len() {

@@ -8,10 +8,10 @@ use crate::model::Model;
 use crate::rapier::rapier3d_f64::prelude::Pose;
 use crate::rapier::{Coupling, CouplingError, CouplingOptions, CouplingSnapshot, WorldSets};
 
-/// MIMo in a Rapier world of your own, with his senses, solved by our engine, with contacts that push both ways.
+/// MIMo in a Rapier world of your own, with his senses, solved by this library's engine, with contacts that push both ways.
 ///
 /// Bodies of the world near him are bodies of his scene while they are near: he feels them, sees them and pushes them, and they push him.
-/// [`Coupling`] tells how, which shapes there are, and what is left to Rapier.
+/// [`Coupling`] describes how, the supported shapes, and what is left to Rapier.
 ///
 /// ```
 /// use babybench::Config;
@@ -66,7 +66,7 @@ pub enum InfantError {
     /// An error in restoring a snapshot.
     #[error(transparent)]
     Snapshot(#[from] SnapshotError),
-    /// The configuration asks for an engine that cannot be coupled.
+    /// The configuration selects an engine that cannot be coupled.
     #[error("`engine: rapier` cannot be coupled with a world: leave it out, or use Bridge")]
     Engine,
     /// The configuration lets MIMo grow.

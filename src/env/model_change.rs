@@ -55,7 +55,7 @@ impl ModelChange {
                 });
             }
         }
-        // undoing the allowed changes must give the model of before; if not, something else was changed
+        // undoing the allowed changes must give the earlier model; if not, something else was changed
         let mut rest = self.after.clone();
         for (to, from) in rows_mut(&mut rest).into_iter().zip(rows(&self.before)) {
             to.copy_from_slice(from);
@@ -170,11 +170,11 @@ impl ModelMut<'_> {
         edit(&mut after);
         let change = ModelChange { before, after };
         change.check()?;
-        // muscles would overwrite the gears in the next step, without a word
+        // muscles would silently overwrite the gears in the next step
         if env.config().actuation_model == ActuationModel::Muscle && change.concerns("actuator_gear") {
             return Err(ModelChangeError::Muscles.into());
         }
-        // made whole before anything of the environment changes
+        // complete before anything in the environment changes
         let blueprint = env.blueprint.changed(&change)?;
         // a picture still to be drawn shows the geoms as they are
         env.senses_mut().look()?;
@@ -191,7 +191,7 @@ impl ModelMut<'_> {
         Ok(())
     }
 
-    /// Sets which equality constraints hold (neq), now and in later episodes: MuJoCo's `eq_active0`, with `eq_active`.
+    /// Sets which equality constraints are active (neq), now and in later episodes: MuJoCo's `eq_active0`, with `eq_active`.
     ///
     /// # Errors
     /// [`ModelChangeError::Fixed`] for another number of constraints.

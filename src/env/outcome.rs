@@ -49,7 +49,7 @@ impl Env {
             desired,
             terms,
         } = &mut self.goals;
-        // after the senses, as touch may be among what a task achieves
+        // after the senses, because touch may be part of the achieved goal
         self.task.achieve(&view, desired, achieved, terms);
         self.conclude();
     }
@@ -58,7 +58,7 @@ impl Env {
     pub(super) fn finish_step(&mut self) {
         self.judge();
         if let BehaviorInfo::Task(info) = &mut self.info.behavior {
-            // before the task informs, which may replace these counters by its own
+            // before the task's report, which may replace these counters by its own
             info.episode_return += self.episode.reward;
         }
         self.track();

@@ -47,7 +47,7 @@ pub(crate) enum EngineCall {
 }
 
 impl LastEngineCall {
-    /// Notes what a call begins with.
+    /// Records what a call begins with.
     pub fn note(&mut self, call: EngineCall, state: &State) {
         (self.call, self.time, self.step) = (call, state.time, state.step);
         self.qpos.clone_from(&state.qpos);
@@ -121,7 +121,7 @@ impl std::fmt::Debug for Physics {
 impl Clone for Physics {
     fn clone(&self) -> Self {
         let kept = match &self.storage {
-            // computed for the copy alone, as the original may never be read
+            // computed for the copy alone, because the original may never be read
             StateStorage::Split(read) if read.get().is_none() => self.computed_again(),
             _ => self.state().clone().into(),
         };
@@ -173,8 +173,9 @@ impl Physics {
         self.parts().1
     }
 
-    /// Returns where steps get their engine from, the state that it advances, where its calls are noted, if they are, and the parameters
-    /// of a reset. Between steps the environment then keeps all of the state until its next episode, as a program may change anything.
+    /// Returns the source of engines for steps, the state that they advance, the record of their calls, if there is one, and the
+    /// parameters of a reset. Between steps the environment then keeps all of the state until its next episode, because a program may
+    /// change anything.
     pub fn parts(
         &mut self,
     ) -> (
@@ -273,7 +274,7 @@ impl Physics {
 
     /// Switches to the engines of another model of the same sizes.
     pub fn use_engines(&mut self, engines: &Arc<Engines>) {
-        // what those of the other model computed, these would compute differently
+        // the new engines would compute other quantities than those stored
         self.keep_all();
         self.engines = engines.clone();
         if let Some(own) = &mut self.own {

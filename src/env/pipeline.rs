@@ -14,7 +14,7 @@ struct ConfiguredTransform {
 }
 
 impl ConfiguredTransform {
-    /// Returns a transform that the configuration asks for.
+    /// Returns a transform that the configuration requests.
     fn configured(transform: Box<dyn Transform>) -> Self {
         let configured = true;
         Self { transform, configured }

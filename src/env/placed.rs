@@ -5,8 +5,8 @@ use crate::physics::EngineError;
 
 impl<'a> ManualControl<'a> {
     /// Starts an episode from given positions (nq) and velocities (nv) instead of the settled state, without start actions. The task
-    /// chooses a goal. MIMo keeps his age, whatever [`Config::age_schedule`](crate::Config::age_schedule) says, as the positions are those of
-    /// his body.
+    /// chooses a goal. MIMo keeps his age, whatever [`Config::age_schedule`](crate::Config::age_schedule) is, because the positions are
+    /// those of his body.
     ///
     /// # Errors
     /// Wrong lengths, numbers that are not finite, or a state from which the simulation diverges. The episode is then over.

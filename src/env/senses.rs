@@ -56,7 +56,7 @@ pub struct Senses {
     /// Whether pictures are drawn on request.
     pub(super) vision_lazy: bool,
     pub(super) picture: PictureStatus,
-    /// Whether the next step is likely to draw the eyes. It decides when a thread wakes and no bit.
+    /// Whether the next step is likely to draw the eyes. It affects when a thread wakes, but no bits.
     draws_next: bool,
     /// Number of times the eyes were drawn.
     pub(super) drawn: u64,
@@ -336,7 +336,7 @@ impl Senses {
     /// Samples the skin.
     fn feel(&mut self, model: &Model, state: &State) {
         let Some(touch) = &mut self.touch else { return };
-        // pooled touch and pain follow from it, so they are computed whenever the skin looks, and never without it
+        // pooled touch and pain follow from it, so they are computed whenever the skin samples, and never without it
         touch.observe(model, state);
         if self.pipeline.changes(Sense::Touch) {
             self.touch_values.copy_from(touch.felt());

@@ -91,7 +91,7 @@ impl std::fmt::Debug for Viewer {
 }
 
 impl Viewer {
-    /// Creates a viewer with the renderer that the blueprint's configuration asks for.
+    /// Creates a viewer with the renderer that the blueprint's configuration selects.
     ///
     /// # Errors
     /// As [`Blueprint::renderer`].

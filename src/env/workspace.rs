@@ -41,7 +41,7 @@ impl Env {
         }
     }
 
-    /// Returns whether they do.
+    /// Returns whether steps and resets share scratch states.
     pub(crate) fn shares(&self) -> bool {
         self.physics.shares()
     }

@@ -7,7 +7,7 @@ macro_rules! embed {
         /// Paths and contents of the embedded files.
         const FILES: &[(&str, &[u8])] = &[
             $(($path, include_bytes!(concat!("../../assets/", $path))),)*
-            // the documents name all faces, so that what is left out must be there by name
+            // the documents name all faces, so faces that are left out must still exist by name
             $(($face, if cfg!(feature = "eval") { include_bytes!(concat!("../../assets/", $face)) } else { &[] }),)*
         ];
     };

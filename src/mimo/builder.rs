@@ -8,7 +8,7 @@ use crate::math::Vec3;
 /// Adds custom bodies to a scene of the library, without writing files.
 ///
 /// Additions are [MJCF](https://mujoco.readthedocs.io/en/3.3.0/XMLreference.html): elements of the world (bodies, geoms, sites, cameras, lights, frames) and whole sections (assets, defaults, contacts, equalities, actuators, sensors,
-/// keyframes). It becomes [`Config::scene_extra`], so everything that takes a configuration takes it.
+/// keyframes). They become [`Config::scene_extra`], so everything that takes a configuration accepts them.
 ///
 /// ```
 /// use babybench::config::Scene;
@@ -22,7 +22,7 @@ use crate::math::Vec3;
 /// let blueprint = Blueprint::new(scene.config(config.clone()))?;
 /// assert!(blueprint.model().body("ball").is_some());
 ///
-/// // faults have their place: each fragment begins on a line of its own
+/// // errors name a place: each fragment begins on a line of its own
 /// let error = Blueprint::new(scene.with("<geom colour='0.1'/>").config(config)).unwrap_err();
 /// assert!(error.to_string().contains("scene_extra:3:"), "{error}");
 /// # Ok::<(), babybench::EnvError>(())
@@ -34,7 +34,7 @@ pub struct SceneBuilder {
 }
 
 impl SceneBuilder {
-    /// Starts with a scene of the library. A custom document is not for adding to: [`Config::validate`] refuses it.
+    /// Starts with a scene of the library. Nothing can be added to a custom document: [`Config::validate`] refuses it.
     pub fn new(scene: Scene) -> Self {
         Self {
             scene,
@@ -52,7 +52,7 @@ impl SceneBuilder {
         self
     }
 
-    /// Adds a body of some name at a position (m), with what is in it: joints, geoms, bodies.
+    /// Adds a body with a name and its contents (joints, geoms, bodies) at a position (m).
     #[must_use]
     pub fn body(self, name: &str, pos: Vec3, content: &str) -> Self {
         let [x, y, z] = pos;

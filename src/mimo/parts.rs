@@ -8,12 +8,12 @@ use crate::model::{JointType, Model, ObjType};
 /// Prefix of the names of MIMo's own joints.
 pub const JOINT_PREFIX: &str = "robot:";
 
-/// The body on which all others of MIMo hang.
+/// The body that carries all of MIMo's others.
 pub(crate) const ROOT: &str = "hip";
 
 /// MIMo's bodies in a scene: his hip and everything below it. The names of other bodies do not matter.
 ///
-/// In a model without a hip only names can tell, and every body may be his.
+/// In a model without a hip, only names identify his parts, and every body counts as his.
 ///
 /// ```
 /// use babybench::mimo::{MimoBodies, build_model, embedded};

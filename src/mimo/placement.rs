@@ -16,8 +16,8 @@ pub(super) struct GeomOverlap {
     pub depth: f64,
 }
 
-/// Returns the positions (nq) of a scene with its joints where its active constraints hold them: `qpos0`, but among the cubes
-/// MIMo sits.
+/// Returns the positions (nq) of a scene with its joints where its active constraints hold them: `qpos0`, except among the cubes,
+/// where MIMo sits.
 pub fn held_posture(model: &Model) -> Vec<f64> {
     let mut qpos = model.qpos0.clone();
     for (kind, _) in model
@@ -54,7 +54,7 @@ fn own(model: &Model) -> impl Fn(&usize) -> bool {
     move |g| hip.is_some_and(|hip| model.in_subtree(model.geom_bodyid[*g], hip))
 }
 
-/// Lists the geoms of MIMo that are in each other at the held posture.
+/// Lists the geoms of MIMo that overlap at the held posture.
 pub(super) fn overlaps(model: &Arc<Model>) -> Result<Vec<GeomOverlap>, EngineError> {
     let (state, own) = (at_rest(model)?, own(model));
     let inside = state.contact.iter().filter(|c| c.dist < 0.0 && c.geom.iter().all(&own));

@@ -1,4 +1,4 @@
-//! The table of reflexes, and all constants of theirs that are not geometry, with their sources.
+//! The table of reflexes, and all of their constants that are not geometry, with sources.
 
 use super::sources::{Mark, SourcedConstant};
 use crate::config::Reflex;
@@ -100,7 +100,7 @@ pub(crate) fn of(reflex: Reflex) -> &'static ReflexRow {
     &ROWS[reflex as usize]
 }
 
-/// Returns the gain of a reflex at an age, months. Without an age those that infants lose are full.
+/// Returns the gain of a reflex at an age, months. Without an age, reflexes that infants lose are full.
 pub(crate) fn gain(reflex: Reflex, age: Option<f64>) -> f64 {
     let full = if reflex == Reflex::Vor { VOR_GAIN } else { 1.0 };
     match (of(reflex).ages, age) {
@@ -109,7 +109,7 @@ pub(crate) fn gain(reflex: Reflex, age: Option<f64>) -> f64 {
     }
 }
 
-/// Returns a value that changes in straight lines with age, months; without an age the last.
+/// Returns a value that is linear between ages, months; without an age, the last one.
 pub(crate) fn at_age<const N: usize>(ages: &[f64; N], values: &[f64; N], age: Option<f64>) -> f64 {
     let Some(age) = age else { return values[N - 1] };
     let after = ages.iter().position(|&at| at > age).unwrap_or(N);
@@ -124,13 +124,13 @@ pub(crate) fn at_age<const N: usize>(ages: &[f64; N], values: &[f64; N], age: Op
 pub(crate) const CANAL_AGES: [f64; 2] = [0.0, 2.0];
 pub(crate) const CANAL_TIMES: [f64; 2] = [0.9, 2.0];
 
-/// Velocity of a joint at which the stretch reflex begins, and that by which it is full, rad/s.
+/// Velocity of a joint at which the stretch reflex begins, and the further velocity at which it is full, rad/s.
 pub(crate) const STRETCH: [f64; 2] = [0.2, 2.0];
 /// Share of a motor's strength in the full stretch reflex, at ages in months.
 pub(crate) const STRETCH_AGES: [f64; 2] = [0.0, 12.0];
 pub(crate) const STRETCH_SHARES: [f64; 2] = [0.1, 0.04];
 
-/// Angle of the neck at which the tonic neck reflex begins, and that by which it is full, rad: 30 and 40 degrees.
+/// Angle of the neck at which the tonic neck reflex begins, and the further angle at which it is full, rad: 30 and 40 degrees.
 pub(crate) const ATNR: [f64; 2] = [0.523_598_775_598_298_8, 0.698_131_700_797_731_8];
 /// Gains of its arms, at ages in months; that of the legs is 1.
 pub(crate) const ATNR_ARM_AGES: [f64; 2] = [0.0, 1.4];
@@ -140,9 +140,9 @@ pub(crate) const ATNR_EFFORT: f64 = 0.2;
 /// Its time constants, rising and falling, s.
 pub(crate) const ATNR_TIMES: [f64; 2] = [0.3, 0.3];
 
-/// Pressure in the palm at which the grasp begins, and that by which it is full, N.
+/// Pressure in the palm at which the grasp begins, and the further pressure at which it is full, N.
 pub(crate) const PALMAR: [f64; 2] = [0.05, 0.5];
-/// Pressure behind the toes at which their grasp begins, and that by which it is full, N.
+/// Pressure behind the toes at which their grasp begins, and the further pressure at which it is full, N.
 pub(crate) const PLANTAR: [f64; 2] = [0.1, 1.0];
 /// Place from which on the sole elicits it, over the distance of the toes from the ankle.
 pub(crate) const BALL: f64 = 0.5;
@@ -151,7 +151,7 @@ pub(crate) const BEND: f64 = 0.8;
 /// Time constants of the grasps, rising and falling, s.
 pub(crate) const GRASP_TIMES: [f64; 2] = [0.1, 0.5];
 
-/// Force beside the mouth at which rooting begins, and that by which it is full, N.
+/// Force beside the mouth at which rooting begins, and the further force at which it is full, N.
 pub(crate) const ROOTING: [f64; 2] = [0.02, 0.2];
 /// Distance from the mouth of touches that elicit it, over the radius of the head.
 pub(crate) const BESIDE_MOUTH: f64 = 0.6;
@@ -164,7 +164,7 @@ pub(crate) const ROOTING_EFFORT: f64 = 0.5;
 /// Time constants of rooting, rising and falling, s.
 pub(crate) const ROOTING_TIMES: [f64; 2] = [0.2, 0.6];
 
-/// Share of the weight on the soles at which stepping begins, and that by which it is full.
+/// Share of the weight on the soles at which stepping begins, and the further share at which it is full.
 pub(crate) const STEPPING: [f64; 2] = [0.05, 0.05];
 /// Cosine of the greatest tilt of the trunk: 30 degrees.
 pub(crate) const UPRIGHT: f64 = 0.866_025_403_784_438_6;

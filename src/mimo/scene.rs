@@ -26,7 +26,7 @@ const HEAD: &str = "head";
 ///
 /// # Errors
 /// Fails if the assets cannot be read or compiled, and then names file, line and element; if a custom scene lacks MIMo or changes
-/// him; if MIMo cannot grow to the age, or measurements make a body whose parts vanish or are in each other, and then names the keys.
+/// him; if MIMo cannot grow to the age, or measurements make a body whose parts vanish or overlap, and then names the keys.
 pub fn build_model(config: &Config, assets: &dyn AssetSource) -> Result<Model, SceneError> {
     build_scene(&scene_xml(config), Version::of(config.behavior), config, assets)
 }
@@ -48,7 +48,7 @@ pub fn build_scene(
     };
     let source = SceneSource::of(config, document, path, &room);
     if document != scene_xml(config) {
-        // a task with a document of its own, in which the room may or may not be
+        // a task with a document of its own, which may or may not have the room
         return source.build(version, config).map_err(|e| room.localized(e));
     }
     room.check(&source)?;

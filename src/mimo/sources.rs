@@ -1,4 +1,4 @@
-//! A constant of infants, with where it comes from.
+//! A constant of infants, with its source.
 
 use std::fmt::{self, Display, Formatter};
 
@@ -11,7 +11,7 @@ pub enum Mark {
     Measured,
     /// Taken from an abstract or from a secondary source.
     Seen,
-    /// Nobody's measurement: general knowledge, or a design of this project.
+    /// Not measured: general knowledge, or a design of this project.
     Unsourced,
 }
 

@@ -1,6 +1,6 @@
 //! MIMo 3, whose chest is a body of its own with two joints.
 //!
-//! The folder `mimo3` of the assets has the documents in which MIMo 3 differs from MIMo 2. They take the place of documents of the same
+//! The folder `mimo3` of the assets has the documents in which MIMo 3 differs from MIMo 2. They replace documents of the same
 //! name, so that scenes, rooms and tasks include the same files for both. Everything else is MIMo 2's.
 
 use std::borrow::Cow;
@@ -34,7 +34,7 @@ const BODY: [&str; 6] = [
 #[derive(Clone, Debug)]
 pub(crate) struct VersionAssets<A> {
     given: A,
-    /// Folders whose documents take the place of others; none for MIMo 2.
+    /// Folders whose documents replace others; none for MIMo 2.
     folders: &'static [&'static str],
 }
 
@@ -77,7 +77,7 @@ impl<A: AssetSource> AssetSource for VersionAssets<A> {
         };
         let document = self.replaced(name).unwrap_or_else(|| self.given.read(path))?;
         let is_body = name.strip_suffix(".xml").is_some_and(|name| BODY.contains(&name));
-        // a document that is not XML is the loader's to refuse
+        // the loader refuses a document that is not XML
         let named = if is_body { with_geom_names(&document) } else { None };
         Ok(named.map_or(document, Cow::Owned))
     }
@@ -129,7 +129,7 @@ fn named_geom<'a>(mut start: BytesStart<'a>, bodies: &mut [(String, usize)]) -> 
     Some(start)
 }
 
-/// Returns the name of an element. The outer `None` is for attributes that are not XML.
+/// Returns the name of an element, which may have none. The outer `None` is for attributes that are not XML.
 fn name_of(start: &BytesStart<'_>) -> Option<Option<String>> {
     for attribute in start.attributes() {
         let attribute = attribute.ok()?;

@@ -19,7 +19,7 @@ use crate::model::Model;
 pub struct Pain {
     options: PainOptions,
     compat: Compat,
-    /// Of the bodies of the model.
+    /// By body of the model.
     softness: Vec<f64>,
     sensitivity: Vec<f64>,
     /// Shares the forces.

@@ -1,4 +1,4 @@
-//! Proprioception, the sense of the own body: joint angles, velocities, torques, limits and the state of the actuators.
+//! Proprioception, MIMo's sense of his own body: joint angles, velocities, torques, limits and the state of the actuators.
 
 use std::ops::Range;
 
@@ -180,7 +180,7 @@ impl Proprioception {
         self.torque_sensors.iter().map(|&i| model.sensor_name[i].as_str())
     }
 
-    /// Writes the vector, of length [`Self::len`]. `out` in other lengths is filled as far as it goes.
+    /// Writes the vector, of length [`Self::len`]. If `out` has another length, it is filled as far as possible.
     pub fn observe(&self, model: &Model, s: &State, actuation: &dyn Actuation, out: &mut [f64]) {
         for (component, range) in &self.layout {
             let Some(out) = out.get_mut(range.clone()) else {

@@ -76,7 +76,7 @@ impl Sense {
             Self::Touch | Self::TouchPooled | Self::Pain => (delays.touch, latencies::SKIN),
             Self::Vestibular => (delays.vestibular, latencies::BALANCE),
             Self::EyeLeft | Self::EyeRight => (delays.vision, latencies::SIGHT),
-            // he knows what his own motors are told
+            // he knows the commands to his own motors
             Self::Reflexes => return 0,
         };
         config.sense_delay(own, of_age)

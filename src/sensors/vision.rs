@@ -157,7 +157,7 @@ impl Vision {
     }
 
     /// Draws for both eyes the distance of the surface at each pixel from the camera's plane, m, (height, width);
-    /// infinite where nothing is.
+    /// infinite where there is nothing.
     ///
     /// # Errors
     /// Fails if a buffer has the wrong length.
@@ -166,7 +166,7 @@ impl Vision {
         self.renderer.depth(&requests, eyes)
     }
 
-    /// Draws for both eyes the id of the geom that each pixel shows, (height, width); -1 where none is.
+    /// Draws for both eyes the id of the geom that each pixel shows, (height, width); -1 where there is none.
     ///
     /// # Errors
     /// Fails if a buffer has the wrong length.

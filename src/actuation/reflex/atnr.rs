@@ -9,7 +9,7 @@ use crate::model::Model;
 use crate::physics::State;
 
 struct Atnr {
-    /// The place of the angle of the neck, positive to the left, in `qpos`.
+    /// The index in `qpos` of the neck's angle, positive to the left.
     neck: usize,
     /// Elbows and knees, left and right; both stretch in the positive direction.
     limbs: [[Motor; 2]; 2],

@@ -29,10 +29,10 @@ const TOES: [(&str, f64); 2] = [("toes", -1.0), ("big_toe", -1.0)];
 
 struct Grasp {
     watched: Watched,
-    /// What bends on the left and on the right side, with the angle it bends to, rad.
+    /// The motors that bend on the left and on the right side, with the angles they bend to, rad.
     motors: [Vec<(Motor, f64)>; 2],
     place: Place,
-    /// Pressure at which it begins, and that by which it is full, N.
+    /// Pressure at which it begins, and the further pressure at which it is full, N.
     force: [f64; 2],
 }
 
@@ -151,7 +151,7 @@ impl ReflexLoop for Grasp {
             if effort > 0.0 {
                 for (motor, angle) in motors {
                     motor.pull(input.state, *angle, effort, commands);
-                    // he cannot let go: his action has as little effect as the reflex is strong
+                    // he cannot let go: the stronger the reflex, the less effect his action has
                     motor.suppress(effort, commands);
                 }
             }

@@ -2,9 +2,9 @@
 //!
 //! A loop reads a stimulus after each physics step and, after its delay, adds torques to what the action commands. The order of a physics
 //! step is: stimuli of the past, commands, actuators, engine, stimuli of the present. Loops read nothing else of the computed part of a
-//! state, so that states may take turns in it.
+//! state, so that states may share it in turn.
 //!
-//! The table of reflexes, with ages and sources, is `mimo::reflexes`; what each one does in the file of its name.
+//! The table of reflexes, with ages and sources, is `mimo::reflexes`; each reflex is described in the file of its name.
 
 mod atnr;
 mod contacts;
@@ -32,7 +32,7 @@ pub(crate) use tables::ReflexTables;
 pub struct MotorCommand {
     /// Torque on the joint, N m, in addition to that of the action.
     pub torque: f64,
-    /// The share of the action's command that is suppressed, 0 to 1. At 1 the torque takes the place of springs of servos and of what
+    /// The share of the action's command that is suppressed, 0 to 1. At 1 the torque replaces the springs of servos and what
     /// stretched muscles pull, too.
     pub suppress: f64,
 }
@@ -45,7 +45,7 @@ trait ReflexLoop: Send + Sync {
     /// Returns how many numbers the stimulus has.
     fn channels(&self) -> usize;
 
-    /// Returns how many numbers the loop remembers besides the stimuli on their way.
+    /// Returns how many numbers the loop remembers besides delayed stimuli.
     fn memory(&self) -> usize;
 
     /// Writes the stimulus in a state after a physics step.
@@ -55,16 +55,16 @@ trait ReflexLoop: Send + Sync {
     fn act(&self, input: &mut LoopInput<'_>, commands: &mut [MotorCommand]) -> f64;
 }
 
-/// A loop, and for how many ms a stimulus waits in it.
+/// A loop, and its delay, ms.
 struct Built {
     inner: Box<dyn ReflexLoop>,
     /// Part of the delay that passes in the loop itself, ms.
     inside: f64,
 }
 
-/// What a loop acts on.
+/// The input of a loop.
 struct LoopInput<'a> {
-    /// The state before the physics step, of which positions, velocities and parameters alone are known.
+    /// The state before the physics step, of which only positions, velocities and parameters are known.
     state: &'a State,
     /// The stimulus after the delay.
     stimulus: &'a [f64],
@@ -91,7 +91,7 @@ impl LoopInput<'_> {
 pub(crate) struct Reflexes {
     tables: Arc<ReflexTables>,
     /// The number of physics steps since the start of the episode; then, for each loop, how strongly it acts, the number of steps in
-    /// which it did, stimuli on their way, and its own memory.
+    /// which it did, delayed stimuli, and its own memory.
     memory: Vec<f64>,
     /// The action that reaches the actuators.
     action: Vec<f32>,
@@ -99,7 +99,7 @@ pub(crate) struct Reflexes {
 }
 
 impl Reflexes {
-    /// Begins without a past.
+    /// Creates the reflexes with an empty memory.
     pub fn new(tables: Arc<ReflexTables>, actuation: &dyn Actuation) -> Self {
         Self {
             memory: vec![0.0; tables.memory()],
@@ -114,7 +114,7 @@ impl Reflexes {
         self.tables.clone_from(tables);
     }
 
-    /// Forgets the past, at the start of a reset.
+    /// Clears the memory, at the start of a reset.
     pub fn clear(&mut self) {
         self.memory.fill(0.0);
         self.action.fill(0.0);

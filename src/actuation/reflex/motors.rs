@@ -7,15 +7,15 @@ use crate::mimo::MimoBodies;
 use crate::model::{Model, SensorType};
 use crate::physics::State;
 
-/// Distance from its target at which a motor pulls with all its strength, rad. Ours.
+/// Distance from its target at which a motor pulls with all its strength, rad. Our choice.
 const REACH: f64 = 0.5;
-/// Time by which a motor looks ahead, s: damping over stiffness. Ours.
+/// Time by which a motor looks ahead, s: damping over stiffness. Our choice.
 const AHEAD: f64 = 0.05;
 
 /// A motor of MIMo on a joint.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Motor {
-    /// Its place among the commands.
+    /// Its index among the commands.
     index: usize,
     pub joint: usize,
     pub qpos: usize,

@@ -9,7 +9,7 @@ use crate::mimo::reflexes;
 use crate::model::Model;
 use crate::physics::State;
 
-/// The direction of the mouth from the centre of the head, in its frame: 35 degrees below straight ahead. Ours.
+/// The direction of the mouth from the centre of the head, in its frame: 35 degrees below straight ahead. Our choice.
 const MOUTH: Vec3 = [0.819_152_044_288_991_8, 0.0, -0.573_576_436_351_046];
 
 struct Rooting {

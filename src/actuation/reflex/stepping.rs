@@ -9,7 +9,7 @@ use crate::mimo::reflexes;
 use crate::model::Model;
 use crate::physics::State;
 
-/// Angles of hip and knee of the leg that swings and of the one that stands, rad. Ours.
+/// Angles of hip and knee of the leg that swings and of the one that stands, rad. Our choice.
 const SWING: [f64; 2] = [-1.0, -1.2];
 const STANCE: [f64; 2] = [0.0, -0.1];
 

@@ -20,7 +20,7 @@ pub(super) struct PlacedLoop {
 pub(super) struct LoopMemory<'a> {
     /// How strongly it acts, and the number of steps in which it did.
     pub counts: &'a mut [f64],
-    /// The stimulus of this physics step. Until it is sensed, the oldest that is on its way is here.
+    /// The stimulus of this physics step. Until it is sensed, it is the oldest delayed stimulus.
     pub stimulus: &'a mut [f64],
     pub own: &'a mut [f64],
 }
@@ -66,8 +66,8 @@ impl ReflexTables {
                     loops.push(place(reflex, built, config, model))
                 }
                 Err(missing) if set.contains(reflex) => return Err(missing),
-                // of those of his age, MIMo has the ones for which he has motors; one that is gone stays with a gain of 0, so that
-                // observations have the same length at every age
+                // without a list, MIMo has the reflexes for which he has motors; one that his age has lost stays with a gain of 0, so
+                // that observations have the same length at every age
                 _ => {}
             }
         }
@@ -123,7 +123,7 @@ fn place(reflex: Reflex, built: Built, config: &Config, model: &Model) -> Placed
     }
 }
 
-/// Returns the gains that a configuration has in place of those of the age, in the order of [`Reflex::ALL`].
+/// Returns the gains that a configuration has instead of those of the age, in the order of [`Reflex::ALL`].
 fn own_gains(config: &Config) -> [Option<f64>; Reflex::ALL.len()] {
     let g = &config.reflex_gains;
     [
@@ -138,7 +138,7 @@ fn own_gains(config: &Config) -> [Option<f64>; Reflex::ALL.len()] {
     ]
 }
 
-/// Returns the delays that a configuration has in place of the reflexes' own, ms, in the order of [`Reflex::ALL`].
+/// Returns the delays that a configuration has instead of the reflexes' own, ms, in the order of [`Reflex::ALL`].
 fn own_delays(config: &Config) -> [Option<f64>; Reflex::ALL.len()] {
     let d = &config.reflex_delays;
     [

@@ -13,11 +13,11 @@ use crate::mimo::reflexes::{CANAL_AGES, CANAL_TIMES, at_age};
 use crate::model::{Model, SensorType};
 use crate::physics::State;
 
-/// Share of an eye's momentum that the correction restores in a physics step. Ours.
+/// Share of an eye's momentum that the correction restores in a physics step. Our choice.
 const CORRECTION: f64 = 0.25;
-/// Velocity at which the friction that the torque overcomes is half of the whole, rad/s. Ours.
+/// Velocity at which the friction that the torque overcomes is half of the whole, rad/s. Our choice.
 const SLIDING: f64 = 0.05;
-/// Velocity of an eye at which the reflex is reported to act fully, rad/s. Ours.
+/// Velocity of an eye at which the reflex is reported to act fully, rad/s. Our choice.
 const FULL: f64 = 1.0;
 /// Joints of both eyes.
 const JOINTS: usize = 6;
@@ -107,7 +107,7 @@ impl ReflexLoop for Vor {
             let mut torque = self.inertia[k] * acceleration
                 + state.params.dof_damping[motor.dof] * wanted
                 + self.friction[k] * wanted / (wanted.abs() + SLIDING);
-            // with an action of their own, the eyes may move otherwise than the reflex alone would move them
+            // with an action of their own, the eyes may move differently than with the reflex alone
             if self.replaces {
                 torque += spring + self.inertia[k] * CORRECTION / h * (wanted - velocity);
                 motor.suppress(1.0, commands);

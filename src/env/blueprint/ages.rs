@@ -27,7 +27,7 @@ impl std::fmt::Debug for AgeCache {
 }
 
 impl AgeCache {
-    /// Returns the blueprint of an age, which `make` makes if it is not there.
+    /// Returns the blueprint of an age, which `make` creates if it does not exist.
     fn get(&self, age: Option<f64>, make: impl FnOnce() -> Result<Blueprint, EnvError>) -> Result<Blueprint, EnvError> {
         let slot = self.slot(age);
         let mut made = slot.lock().unwrap_or_else(PoisonError::into_inner);

@@ -47,7 +47,7 @@ impl Blueprint {
         Ok(shared.get_or_init(|| made).clone())
     }
 
-    /// Creates the renderer that the configuration asks for. On a GPU, environments of a blueprint share one.
+    /// Creates the renderer that the configuration selects. On a GPU, environments of a blueprint share one.
     ///
     /// # Errors
     /// Textures that cannot be read; for `renderer: wgpu` a missing graphics adapter, a build without it, or a browser.
@@ -66,7 +66,7 @@ impl Blueprint {
         }
     }
 
-    /// Returns the GPU renderer that environments of this blueprint share, even if the configuration asks for another renderer. It is
+    /// Returns the GPU renderer that environments of this blueprint share, even if the configuration selects another renderer. It is
     /// opened on first use.
     ///
     /// # Errors

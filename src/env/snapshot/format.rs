@@ -20,7 +20,7 @@ pub(super) const HEADER: usize = 32;
 /// The bytes are little-endian and the same on all machines: the magic `BBSNAP\r\n`, the version of the layout (`u32`), a zero (`u32`), a
 /// fingerprint of configuration and scene (`u64`), a checksum of the rest (`u64`), whole numbers (`u64`), numbers (`f64`), flags (a byte
 /// each), touched geoms (`u32`), memory, each part after its length (`u64`), and the keys of the configuration that differ from their
-/// defaults, a line each, before their length (`u32`).
+/// defaults, a line each, followed by their length (`u32`).
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Snapshot {
     pub(super) bytes: Vec<u8>,

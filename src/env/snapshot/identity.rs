@@ -71,7 +71,7 @@ impl Identity {
         Self { fingerprint, keys }
     }
 
-    /// Returns the error for a snapshot with these keys that does not fit; `otherwise` where the keys do not tell why.
+    /// Returns the error for a snapshot with these keys that does not fit; `otherwise` if the keys do not explain it.
     pub fn refuse(&self, keys: &str, otherwise: SnapshotError) -> SnapshotError {
         let (then, now) = (lines(keys), lines(&self.keys));
         let names = order::set(then.keys().chain(now.keys()).copied());

@@ -296,7 +296,7 @@ impl Task for Catch {
         };
         let (ball, hand) = (view.state.xpos[self.target], view.state.xpos[self.hand]);
         let distance = norm(sub(ball, hand));
-        // below the hand or far from it: he cannot catch it any more
+        // below the hand or far from it: he can no longer catch it
         let lost = ball[2] < hand[2] - LOST[0] || distance > LOST[1];
         let contact = self.memory.past[self.memory.now()];
         let found = [flag(contact), cost, flag(held), flag(lost), distance];

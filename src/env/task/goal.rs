@@ -7,9 +7,9 @@ use super::{Task, TaskSizes};
 /// The inputs of a reward: a row of goals.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Goal<'a> {
-    /// The goal that is achieved.
+    /// The achieved goal.
     pub achieved: &'a [f64],
-    /// The goal that is desired.
+    /// The desired goal.
     pub desired: &'a [f64],
     /// Further inputs of the reward besides the goals, such as the cost of the action.
     pub terms: &'a [f64],
@@ -28,7 +28,7 @@ pub struct Outcome {
 #[derive(Clone, Debug, Error, PartialEq, Eq)]
 #[error("{what} has {found} values but the task {task:?} needs {rows} rows of {expected}")]
 pub struct GoalError {
-    /// Which array.
+    /// The array.
     pub what: &'static str,
     /// Its length.
     pub found: usize,

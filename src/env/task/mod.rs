@@ -56,7 +56,7 @@ pub struct TaskDocument {
 }
 
 impl TaskDocument {
-    /// Returns the document that a configuration asks for.
+    /// Returns the document that a configuration selects.
     pub fn of(config: &Config) -> Self {
         Self {
             xml: scene_xml(config),

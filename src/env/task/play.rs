@@ -192,7 +192,7 @@ impl Task for Play {
                 toy.held = true;
                 holding = true;
             }
-            // toys that roll by themselves say nothing about him
+            // toys that roll by themselves do not count
             if toy.touched {
                 self.memory.path += norm(sub(place, toy.last));
                 toy.moved |= norm(sub(place, toy.start)) > MOVED;

@@ -123,7 +123,7 @@ impl<'a> TaskScene<'a> {
         self.start
     }
 
-    /// Forgets the past: time, controls and the start of the solver are 0, the actuators rest, parameters are those of the
+    /// Resets the scene: time, controls and the start of the solver are 0, the actuators rest, parameters are those of the
     /// blueprint; and computes everything at the settled state.
     ///
     /// # Errors
@@ -211,7 +211,7 @@ impl<'a> TaskScene<'a> {
             (None, _) => action,
         };
         match &mut self.reflexes {
-            // they pass it on with what they add, in each physics step
+            // reflexes pass it on with their commands in each physics step
             Some(reflexes) => reflexes.take_action(action),
             None => self.actuation.set_action(self.model, self.state, action),
         }

@@ -1,4 +1,4 @@
-//! Touching a part of the own body.
+//! Touching a part of his own body.
 
 use super::pose::{Angles, free_address, own_joint, set_angles};
 use super::scene::{TaskScene, TaskView};

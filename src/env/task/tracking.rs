@@ -28,7 +28,7 @@ pub(super) struct HeadTracking {
     from_eyes: bool,
 }
 
-/// The joints of the eyes that the Python code forgets.
+/// The joints of the eyes that the Python code omits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum ForgottenJoints {
     /// None.

@@ -66,7 +66,7 @@ impl<A: AssetSource> CustomScene<A> {
         Ok(())
     }
 
-    /// Checks that MIMo hangs on the body that is called after his place.
+    /// Checks that MIMo hangs on the body that is named after his place.
     fn check_place(&self, tree: &Tree) -> Result<(), CustomSceneError> {
         let hip = |at: &usize| tree.nodes[*at].name == "body" && tree.nodes[*at].attribute("name") == Some(ROOT);
         let around = |node: &Node| node.children.iter().any(hip);

@@ -56,7 +56,7 @@ pub enum CustomSceneError {
         /// The contents of that file.
         what: &'static str,
     },
-    /// An element that no custom scene may have, or not like this.
+    /// An element that no custom scene may have, or not in this form.
     #[error("{place}: {reason}")]
     At {
         /// Place of the element.

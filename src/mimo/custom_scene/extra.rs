@@ -30,7 +30,7 @@ struct InsertedText {
 impl ExtraElements {
     /// Makes a document from a text: elements of the world go into the world, and sections remain sections.
     ///
-    /// Faults of the text are for the loader to name, so that nothing is an error here.
+    /// The loader reports faults of the text, so nothing is an error here.
     pub fn new(text: &str) -> Self {
         let mut extra = Self {
             document: String::with_capacity(text.len() + 64),
@@ -107,7 +107,7 @@ pub(super) fn check(text: &str) -> Result<(), CustomSceneError> {
                     text: stray.to_string(),
                 });
             }
-            // what is no XML is left to the loader
+            // text that is not XML is left to the loader
             Ok(Event::Eof) | Err(_) => return Ok(()),
             Ok(_) => {}
         }

@@ -54,7 +54,7 @@ enum DocumentSource {
     Given(String),
     /// In this folder of the file system.
     Disk { files: DirAssets, folder: PathBuf },
-    /// It is what is added to a scene of the library.
+    /// In the additions to a scene of the library.
     Added(ExtraElements),
 }
 
@@ -177,7 +177,7 @@ impl<A: AssetSource> CustomScene<A> {
         }
     }
 
-    /// Returns whether the library names a file, which this build may leave out, or the assets give it.
+    /// Returns whether the library names a file, even one that this build leaves out, or the assets have it.
     fn has_library(&self, path: &str) -> bool {
         self.given.contains(path) || embedded().contains(path)
     }

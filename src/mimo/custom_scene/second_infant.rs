@@ -45,7 +45,7 @@ pub(super) fn written(config: &Config) -> [(&'static str, String); 4] {
     ]
 }
 
-/// Returns the file of the library that a file of the second infant is made of.
+/// Returns the file of the library that a file of the second infant is made from.
 pub(super) fn original(name: &str) -> Option<&str> {
     name.strip_prefix(FILE)
 }

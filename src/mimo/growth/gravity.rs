@@ -1,4 +1,4 @@
-//! The torque of gravity on the joints of a body, to hold its strength against.
+//! The torque of gravity on the joints of a body, for comparison with its strength.
 
 use crate::math::{Vec3, add_scaled, cross, norm, scale, sub};
 use crate::mimo::{MimoJoints, ROOT};

@@ -151,7 +151,7 @@ struct Bodies<'m> {
 }
 
 impl Bodies<'_> {
-    /// Returns what the ratios of a curve refer to, N m, for the original body and for the other.
+    /// Returns the torques that the ratios of a curve refer to, N m, for the original body and for the other.
     fn gravity(&self, curve: &RatioCurve) -> Result<[f64; 2], GrowthError> {
         let both = [&self.original, &self.strong].map(|weights| match curve.against {
             Against::Joint(joint) => weights.torque(joint),

@@ -106,7 +106,7 @@ impl Growth {
         }))
     }
 
-    /// Adds the strength of infants and springs by weight, if a configuration asks for them. They follow the weight of the MIMo of `assets`.
+    /// Adds the strength of infants and springs by weight, if a configuration requests them. They follow the weight of the MIMo of `assets`.
     ///
     /// # Errors
     /// Assets that cannot be compiled.

@@ -1,6 +1,6 @@
 //! The strength of infants as ratios to the torque of gravity, by groups of joints and age.
 //!
-//! Nobody has measured the joint torques of infants. The ratios are calibrated so that MIMo does what infants of an age can do; see
+//! The joint torques of infants have not been measured. The ratios are calibrated so that MIMo does what infants of an age can do; see
 //! `docs/guide/infant.md` for the milestones and for the sweep.
 
 use crate::config::StrengthFactors;

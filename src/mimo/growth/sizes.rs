@@ -111,7 +111,7 @@ pub(super) fn shapes(version: Version, has_chest: bool, now: &Lengths, base: &Le
     out
 }
 
-/// Checks that every geom has a size; otherwise says which has none.
+/// Checks that every geom has a size; the error names the geom that has none.
 pub(super) fn check(shapes: &BodyShapes) -> Result<(), String> {
     for geom in &shapes.geoms {
         let gone = |s: &f64| !(s.is_finite() && *s >= 0.0);

@@ -48,8 +48,8 @@ impl Hull {
     /// sensors and far above rounding, so that rings, walls and grids need no special treatment.
     pub fn new(points: &[Vec3]) -> Option<Self> {
         let extent = points.iter().flatten().fold(0.0_f64, |m, x| m.max(x.abs()));
-        // rounding may contradict itself for points near a plane at just this tolerance; at another one other points
-        // are near
+        // rounding may be inconsistent for points whose distance from a plane is near this tolerance; another tolerance avoids
+        // these points
         let faces = [1e-12, 1e-11, 1e-10]
             .iter()
             .find_map(|tolerance| quickhull(points, tolerance * extent))?;

@@ -94,7 +94,7 @@ impl SkinBody {
         self.positions.len()
     }
 
-    /// Returns whether the body has no sensors: all its points lie inside one another, or it has no geoms.
+    /// Returns whether the body has no sensors: all its points lie inside other geoms, or it has no geoms.
     pub fn is_empty(&self) -> bool {
         self.positions.is_empty()
     }
@@ -120,7 +120,7 @@ pub struct SkinLayout {
 impl SkinLayout {
     /// Places the sensors of MIMo's skin as `touch_<part>`, `touch_scale` and `compat` say.
     ///
-    /// Under `compat: reference` MIMo v2 has the table of v1, which knows neither its fingers nor its big toes.
+    /// Under `compat: reference` MIMo v2 has the table of v1, which has neither his fingers nor his big toes.
     ///
     /// # Errors
     /// Fails if `touch_scale` would give no or too many sensors.

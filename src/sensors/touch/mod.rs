@@ -94,7 +94,7 @@ impl Touch {
     /// Creates a sense that feels nothing yet.
     ///
     /// Any `function` may be combined with any `compat`: [`TouchFunction::Normal`] is the page's normal force,
-    /// [`TouchFunction::NormalForce`] the Python code's. `compat` decides about
+    /// [`TouchFunction::NormalForce`] the Python code's. `compat` decides
     /// - the frame of [`TouchFunction::ForceVector`]: that of the sensor's geom, or (reference) that of its body,
     /// - the point of the second side of contacts between bodies with skin, see [`touch_contacts`],
     /// - [`TouchResponse::SpreadLinear`] of a force with no x component: shared like any other, or (reference) lost.
@@ -112,7 +112,7 @@ impl Touch {
         }
     }
 
-    /// Creates the sense that `touch_function`, `touch_response` and `compat` ask for.
+    /// Creates the sense that `touch_function`, `touch_response` and `compat` select.
     pub fn configured(layout: Arc<SkinLayout>, config: &Config) -> Self {
         Self::new(layout, config.touch_function, config.touch_response, config.compat)
     }

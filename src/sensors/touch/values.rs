@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-/// Numbers of all sensors of a skin, N, with the list of the sensors that may be other than zero.
+/// Numbers of all sensors of a skin, N, with the list of the sensors that may be nonzero.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SkinValues {
     width: usize,
@@ -85,7 +85,7 @@ impl SkinValues {
         }
     }
 
-    /// Takes out of the list the sensors whose values are zero.
+    /// Removes from the list the sensors whose values are zero.
     pub fn forget_zeros(&mut self) {
         let (values, is_touched, width) = (&self.values, &mut self.is_touched, self.width);
         self.touched.retain(|&sensor| {

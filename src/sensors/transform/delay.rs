@@ -1,4 +1,4 @@
-//! Delays of senses, as of nerves.
+//! Delays of senses, like those of nerves.
 
 use super::{Signal, Transform};
 use crate::sensors::{EyeImages, SkinValues};

@@ -1,6 +1,6 @@
 //! Fourier transforms of pictures, with the same bits on every target.
 //!
-//! Of the libraries, `rustfft` and `realfft` choose their algorithm by the processor's instructions and take sines from the
+//! The libraries `rustfft` and `realfft` choose their algorithm by the processor's instructions and take sines from the
 //! platform, so that the last bits differ between machines.
 
 mod columns;
@@ -75,7 +75,7 @@ impl<T: ColumnTransform> Filter<T> {
             #[inline(always)]
             || {
                 self.down.forward(picture);
-                // a transform works on all columns side by side, as vector instructions like it; transposed, the rows
+                // a transform works on all columns side by side, which suits vector instructions; transposed, the rows
                 // are columns
                 turn(picture, turned, height, width);
                 self.across.forward(turned);

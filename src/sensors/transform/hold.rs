@@ -3,7 +3,7 @@
 use super::{DelayValues, Signal};
 use crate::sensors::{EyeImages, SkinValues};
 
-/// The values that a sense had when it looked last.
+/// The values that a sense had when it last sampled.
 #[derive(Clone, Debug)]
 pub(crate) struct SampleHold {
     kept: HeldValues,
@@ -27,7 +27,7 @@ impl SampleHold {
         Self { kept }
     }
 
-    /// Keeps what the sense has just seen.
+    /// Keeps what the sense has just sampled.
     pub fn keep(&mut self, signal: &Signal<'_>) {
         match (&mut self.kept, signal) {
             (HeldValues::Numbers(kept), Signal::Numbers(values)) if kept.len() == values.len() => {
@@ -39,7 +39,7 @@ impl SampleHold {
         }
     }
 
-    /// Shows what was kept.
+    /// Replaces the values by the kept ones.
     pub fn show(&self, signal: &mut Signal<'_>) {
         match (&self.kept, signal) {
             (HeldValues::Numbers(kept), Signal::Numbers(values)) if kept.len() == values.len() => {

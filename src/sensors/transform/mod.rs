@@ -68,7 +68,7 @@ pub enum Signal<'a> {
 }
 
 impl Signal<'_> {
-    /// Lends the signal to a function that takes it over.
+    /// Reborrows the signal for a function that takes ownership of it.
     pub fn reborrow(&mut self) -> Signal<'_> {
         match self {
             Self::Numbers(values) => Signal::Numbers(values),

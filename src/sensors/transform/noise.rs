@@ -23,7 +23,7 @@ impl Noise {
         }
     }
 
-    /// Keeps touch from being less than zero, as normal forces are not.
+    /// Keeps touch from falling below zero, because normal forces are never negative.
     pub fn of_magnitudes(self) -> Self {
         Self { least: 0.0, ..self }
     }

@@ -63,7 +63,7 @@ impl RadixTwo {
         }
     }
 
-    // elsewhere `vectorize` has one version, and each of a filter's calls would be a copy
+    // on other targets `vectorize` has one version, which each of a filter's calls would inline
     #[cfg_attr(target_arch = "x86_64", inline(always))]
     #[cfg_attr(not(target_arch = "x86_64"), inline(never))]
     fn transform(&self, re: &mut [f64], im: &mut [f64]) {
@@ -144,7 +144,7 @@ impl ChirpTransform {
         }
     }
 
-    // elsewhere `vectorize` has one version, and each of a filter's calls would be a copy
+    // on other targets `vectorize` has one version, which each of a filter's calls would inline
     #[cfg_attr(target_arch = "x86_64", inline(always))]
     #[cfg_attr(not(target_arch = "x86_64"), inline(never))]
     fn transform(&mut self, re: &mut [f64], im: &mut [f64]) {
