@@ -42,7 +42,7 @@ export class Blueprint {
     return Object.fromEntries(guarded(() => this.core.config()));
   }
 
-  /** Frees the memory. Environments made from it stay. A second call throws a `FreedError`. */
+  /** Frees the memory. Environments made from it keep working. A second call throws a `FreedError`. */
   free() {
     const { core } = this;
     this.#core = undefined;

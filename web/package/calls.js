@@ -17,7 +17,7 @@ export const PROPERTIES = /** @type {const} */ ([
  * @typedef {Env[K] extends (...args: infer A) => unknown ? A : []} Arguments
  */
 /**
- * What is answered.
+ * The result of a call, or the value of a property.
  * @template {Asked} K
  * @typedef {Env[K] extends (...args: any[]) => infer R ? R : Env[K]} Answer
  */

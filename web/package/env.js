@@ -370,7 +370,7 @@ export class Env {
 
   /**
    * Draws the scene from one of its cameras, by name, or from anywhere. The pixels are a view, ready for `ImageData`: red,
-   * green, blue and 255, rows from the top, until the next picture. Memory may grow for it, which empties the views that one kept.
+   * green, blue and 255, rows from the top, until the next picture. Memory may grow for it, which empties earlier views.
    * @param {string | import("./types.js").FreeCamera} camera
    * @param {number} width
    * @param {number} height

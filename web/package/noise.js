@@ -7,7 +7,7 @@ import { ArgumentError, FreedError, ModuleError } from "./errors.js";
 import { guarded, memory } from "./module.js";
 
 /**
- * A noise over the actions of an environment: the same seed gives the same actions here, in Rust and in Python.
+ * Action noise for an environment: the same seed gives the same actions here, in Rust and in Python.
  *
  * ```js
  * const noise = new ActionNoise("pink", env, 42);
@@ -22,7 +22,7 @@ export class ActionNoise {
    * @param {string} noise `white` (new at every step), `held` (for 0.5 s; `held:0.1` for 0.1 s), `ou` (Ornstein-Uhlenbeck; `ou:0.2` with a
    * correlation of 0.2 s), `pink`, `color:0.69` (power falls with that power of the frequency, 0 to 2), `color_by_age:3` (the exponent of
    * infants of 3 months), or `oscillators` (coupled, of 1 Hz; `oscillators:2` of 2 Hz)
-   * @param {Env} env whose actions they are
+   * @param {Env} env the environment to act in
    * @param {number | bigint} [seed]
    */
   constructor(noise, env, seed = 0) {

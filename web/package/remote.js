@@ -20,7 +20,7 @@ export class Connection {
   /** @type {Map<number, { resolve: (value: any) => void, reject: (error: Error) => void }>} */
   #waiting = new Map();
 
-  /** @type {Error | undefined} why it is over */
+  /** @type {Error | undefined} why the connection has ended */
   #over;
 
   /** @param {Worker} worker */
@@ -68,7 +68,7 @@ export class Connection {
    * @param {import("./types.js").Assets} [assets] files by path, with a custom scene and its textures
    */
   async create(config = {}, name = "configuration", assets = {}) {
-    files("assets", assets); // refused here, where the call is
+    files("assets", assets); // refused here, where the caller is
     const args = [yamlOf(config), text("name", name), assets];
     return new RemoteEnv(this, await this.send(undefined, "create", args));
   }

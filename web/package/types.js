@@ -13,13 +13,13 @@
  * @property {string[] | null} options of a choice, or what a list may hold
  * @property {number | null} min
  * @property {number | null} max
- * @property {string} expected what is allowed, in words
+ * @property {string} expected the allowed values, in words
  * @property {string | number | boolean | string[] | null} default
  * @property {string} doc what it means
  */
 
 /**
- * What MIMo senses. Views on the module's memory: they change with the next step; copy what is to stay.
+ * What MIMo senses. Views on the module's memory: they change with the next step; copy what you keep.
  * @typedef {object} Observation
  * @property {Float64Array} proprioception Gymnasium's key `observation`
  * @property {Float32Array | null} touch what the skin feels, N

@@ -34,7 +34,7 @@ await build({
 });
 const css = ["tokens", "layout", "controls"].map((name) => readFileSync(join(here, `css/${name}.css`), "utf8")).join("\n");
 await build({ stdin: { contents: css, loader: "css" }, outfile: join(out, "page.css"), minify: true, logLevel: "warning" });
-// who unfolds a link to the page needs whole addresses: PAGE_URL says where the page will be
+// previews of links to the page need absolute addresses: PAGE_URL is that of the page
 const home = process.env.PAGE_URL;
 const html = readFileSync(join(here, "index.html"), "utf8");
 writeFileSync(join(out, "index.html"), home ? html.replace('content="./card.png"', `content="${new URL("card.png", home.endsWith("/") ? home : `${home}/`).href}"`) : html);

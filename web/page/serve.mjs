@@ -1,5 +1,5 @@
-// Serves a folder on this machine, compressed, with validators: `node serve.mjs DIR [PORT]`. Any static host does as well; the smallest
-// answers are those of one that serves FILE.br, which the build leaves beside FILE.
+// Serves a folder on this machine, compressed, with validators: `node serve.mjs DIR [PORT]`. Any static host works, too; answers are
+// smallest from a host that serves FILE.br, which the build leaves beside FILE.
 import { createHash } from "node:crypto";
 import { readFileSync, statSync } from "node:fs";
 import { createServer } from "node:http";
@@ -16,7 +16,7 @@ const PACKERS = { br: (bytes) => brotliCompressSync(bytes, { params: { [constant
  * @param {string} folder
  * @param {number} port 0 takes a free one
  * @param {string} [under] path that the folder appears under
- * @param {{ bare?: boolean, seen?: (path: string) => void }} [how] bare: as the plainest hosts, without compression and validators
+ * @param {{ bare?: boolean, seen?: (path: string) => void }} [how] bare: like the plainest hosts, without compression and validators
  * @returns {Promise<{ url: string, close: () => void }>}
  */
 export function serve(folder, port = 0, under = "/", { bare = false, seen = () => {} } = {}) {

@@ -1,9 +1,9 @@
-// States of the world that a person has to hear of, in one table: what is said, and what can be done about it.
+// States of the world that the page announces, in one table: the text, and the actions that it offers.
 import { capital, TASKS } from "./names.js";
 
 /** @typedef {import("./app.js").App} App */
 /**
- * The current announcement. What stays does so until it is closed; an alert takes the focus.
+ * The current announcement. One that stays does so until it is closed; an alert takes the focus.
  * @typedef {{ text: string, bad?: boolean, stays?: boolean, alert?: boolean, actions?: [string, () => unknown][] }} Notice
  */
 
@@ -20,7 +20,7 @@ export const STATES = {
       if (network) app.state.policy = "babbling";
       return app.revive();
     };
-    return { text: `The simulation has not answered for 10 seconds, and time stands.${why}`, bad: true, alert: true, actions: [["Start again", again], ["Wait", () => {}]] };
+    return { text: `The simulation has not answered for 10 seconds, and time has stopped.${why}`, bad: true, alert: true, actions: [["Start again", again], ["Wait", () => {}]] };
   },
 
   /** @param {App} app @param {{ steps: number, full: boolean }} tape */
@@ -30,7 +30,7 @@ export const STATES = {
   replayed: (app, { steps, same }) => {
     const { recordings } = app;
     const again = () => recordings.last && recordings.replay(recordings.last);
-    const verdict = same === null ? "" : same ? " It ends with the same bits." : " It ends elsewhere than the recording did: another version or configuration made it.";
+    const verdict = same === null ? "" : same ? " It ends with the same bits." : " It does not end where the recording did: another version or configuration made it.";
     return { text: `The replay is over: ${steps} steps.${verdict} Play continues from here.`, stays: true, actions: [["Replay again", again]] };
   },
 
@@ -47,7 +47,7 @@ export const STATES = {
   },
 
   /** @param {App} _app @param {{ name: string, size: number }} network */
-  missing: (_app, { name, size }) => ({ text: `This run was moved by ${name}${size ? ` (${Math.ceil(size / 1e3)} kB)` : ""}, which the link does not hold. Drop it on the page to go on as it did; until then MIMo babbles.`, bad: true }),
+  missing: (_app, { name, size }) => ({ text: `This run was moved by ${name}${size ? ` (${Math.ceil(size / 1e3)} kB)` : ""}, which the link does not hold. Drop it on the page to continue as before; until then MIMo babbles.`, bad: true }),
 
   /** @param {App} app @param {string} why */
   misfit: (app, why) => ({ text: `${app.model?.name ?? "The network"} does not fit this configuration, so MIMo babbles: ${why}`, bad: true }),
@@ -59,7 +59,7 @@ export const STATES = {
   slow: (app, pace) => ({ text: `This machine is too slow for two MIMos at ${app.state.speed} ×: a second takes them ${(1 / pace).toFixed(1)} s.`, stays: true, actions: [["End the comparison", () => app.compare(null)]] }),
 
   /** @param {App} _app @param {string[]} what */
-  refused: (_app, what) => ({ text: `The link asks for what there is not: ${what.join(", ")}. The rest of it is kept.`, bad: true }),
+  refused: (_app, what) => ({ text: `The link has settings that do not exist: ${what.join(", ")}. The rest of it is kept.`, bad: true }),
 };
 
 /**

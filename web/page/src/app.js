@@ -15,7 +15,7 @@ import { World, WorldError } from "./world.js";
 /** @typedef {{ name: string, bytes: Uint8Array<ArrayBuffer>, url: string | null }} Network */
 /** @typedef {"scene" | "tick" | "state" | "play" | "notice" | "over" | "eyes" | "second eyes" | "tape" | "pull"} Event */
 
-/** Milliseconds between updates of numbers; faster than anyone reads them. */
+/** Milliseconds between updates of numbers; faster ones could not be read. */
 const TICK = 100;
 
 export class App {

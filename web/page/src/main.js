@@ -1,4 +1,4 @@
-// The door of the page: puts its parts together and starts the world.
+// The entry point of the page: puts its parts together and starts the world.
 import { App } from "./app.js";
 import { $, calm } from "./dom.js";
 import { help } from "./panels/help.js";
@@ -99,7 +99,7 @@ function legend(app) {
 }
 
 /**
- * Requests pictures of the eyes, as often as one can follow, while the page is visible.
+ * Requests pictures of the eyes, as often as a viewer can follow, while the page is visible.
  * @param {App} app
  */
 function glances(app) {
@@ -188,7 +188,7 @@ async function main() {
   embed(app);
   drops(app);
   document.addEventListener("visibilitychange", () => app.world.tell("asleep", document.hidden));
-  // for the console, and for those who test the page
+  // for the console and for tests
   Object.assign(globalThis, { mimo: app, mimoHelp: openHelp });
   try {
     const started = app.start();
@@ -199,7 +199,7 @@ async function main() {
     stage.invalidate();
     if (!continued && !calm() && !new URLSearchParams(location.search).has("paused")) app.play(true);
   } catch (e) {
-    if (app.world.alive) app.announce("lost", e instanceof Error ? e.message : String(e)); // else it was told
+    if (app.world.alive) app.announce("lost", e instanceof Error ? e.message : String(e)); // else it was announced already
     hideVeil();
   }
   keepFiles(app);

@@ -50,9 +50,9 @@ const WORDS = {
  * @type {Record<string, { title: string, goal: string }>}
  */
 export const TASKS = {
-  reach: { title: "Reach", goal: "Knock the hovering ball from its place with the right hand, on which his eyes are." },
+  reach: { title: "Reach", goal: "Knock the hovering ball, which his eyes follow, from its place with the right hand." },
   standup: { title: "Stand up", goal: "Rise from a crouch by the railing, until the head is half a metre above the ground." },
-  selfbody: { title: "Touch a part", goal: "Touch one part of the own body, another in each episode, with the right hand." },
+  selfbody: { title: "Touch a part", goal: "Touch one part of his own body, another in each episode, with the right hand." },
   catch: { title: "Catch", goal: "Hold the ball that falls into the right hand for a hundred steps; every effort costs." },
   roll_over: { title: "Roll over", goal: "Roll from the back to the belly, with as little effort as it takes." },
   mobile: { title: "Mobile", goal: "Move a limb more often while the mobile is tied to it by a ribbon than before." },

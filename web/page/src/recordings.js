@@ -1,4 +1,4 @@
-// Recordings of the page: nothing ends one unasked, and what was recorded is kept.
+// Recordings of the page: nothing ends one without asking, and what was recorded is kept.
 
 /** @typedef {import("./types").Recording} Recording */
 
@@ -18,8 +18,8 @@ export class Recordings {
    */
   async consent(what) {
     if (this.app.moment?.recorded == null) return true;
-    if (!(await this.app.confirm(`${what} ends the recording that runs.`, "End it and go on", "Keep recording"))) {
-      this.app.emit("state"); // controls show again what is
+    if (!(await this.app.confirm(`${what} ends the running recording.`, "End it and go on", "Keep recording"))) {
+      this.app.emit("state"); // controls show the actual state again
       return false;
     }
     await this.end();

@@ -33,7 +33,7 @@ export class Second {
   }
 
   /**
-   * Shows a scene beside the first; nothing takes the picture away.
+   * Shows a scene beside the first; null removes the picture.
    * @param {Scene | null} scene
    */
   show(scene) {

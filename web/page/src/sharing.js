@@ -1,4 +1,4 @@
-// The page and its links: what an address holds is opened, and what there is goes into an address.
+// The page and its links: opens the contents of an address, and writes the page's state into one.
 import * as link from "./link.js";
 import { fromFile } from "./recording.js";
 import { roomOf, sceneOf } from "./room.js";
@@ -115,7 +115,7 @@ export class Sharing {
   }
 
   /**
-   * Replaces the state of the page by that of a link. What there is not is named, and the rest kept.
+   * Replaces the state of the page by that of a link. Settings that do not exist are named, and the rest is kept.
    * @param {Link} found
    * @returns {Promise<"moment" | "settings" | null>} nothing if it cannot be opened
    */
@@ -146,8 +146,8 @@ export class Sharing {
   }
 
   /**
-   * Gets the network that moves a state: the link's, that of its address, or the current one. Without one MIMo babbles, and it is
-   * said what is missing.
+   * Gets the network that moves a state: the link's, that of its address, or the current one. Without one MIMo babbles, and
+   * a notice names what is missing.
    * @param {PageState} state
    * @param {Uint8Array<ArrayBuffer> | null} bytes
    */
@@ -233,8 +233,8 @@ export class Sharing {
     const held = files !== null && files.length <= LARGEST;
     const href = new URL(`#${await link.encode(state, snapshot, second, fits ? packed : null, held ? files : null)}`, location.href).href;
     const lacks = [];
-    if (files && !held) lacks.push(`It does not hold the room ${state.settings.scene} (${(files.length / 1e3).toFixed(0)} kB): who opens it must drop that on the page before.`);
-    if (packed && !fits) lacks.push(`It does not hold the network ${app.model?.name} (${(packed.length / 1e3).toFixed(0)} kB): who opens it must drop that file on the page, or you put it on a server and open this page with ?policy= and its address.`);
+    if (files && !held) lacks.push(`It does not hold the room ${state.settings.scene} (${(files.length / 1e3).toFixed(0)} kB): to open it, first drop that on the page.`);
+    if (packed && !fits) lacks.push(`It does not hold the network ${app.model?.name} (${(packed.length / 1e3).toFixed(0)} kB): to open it, first drop that file on the page, or put it on a server and open this page with ?policy= and its address.`);
     if (app.moment?.replay) lacks.push("A recording plays here, which the link does not hold: from this moment its policy continues.");
     return { href, lacks: lacks.join(" ") };
   }

@@ -1,4 +1,4 @@
-// The state of the page: what a first visitor meets, and what a link or an earlier visit may say.
+// The state of the page: the one for a first visitor, and the valid values from a link or an earlier visit.
 
 /** @typedef {import("./types").PageState} PageState */
 /** @typedef {import("./types").PolicyName} PolicyName */

@@ -1,4 +1,4 @@
-// What the page and its worker say to each other, and what both keep.
+// The messages between the page and its worker, and the data that both keep.
 
 /** A visible geom or site; `size` scales the unit shape, m. */
 export interface Drawable {
@@ -67,7 +67,7 @@ export interface Key {
 export type Setting = string | number | boolean | string[] | null;
 export type Settings = Record<string, Setting>;
 
-/** What the page learns once about a world. */
+/** The data about a world that the page gets once. */
 export interface Scene {
   /** Every key. */
   settings: Settings;
@@ -105,7 +105,7 @@ export interface Layout {
   length: number;
 }
 
-/** What the behavior counts, for people. */
+/** The counters of the behavior, for display. */
 export interface Score {
   behavior: string;
   value: number | null;
@@ -120,14 +120,14 @@ export interface Score {
   kit: [number, number, number, number] | null;
 }
 
-/** What the eyes notice: left and right picture, RGBA, width and height of each, and how many seconds ago it was before them. */
+/** What the eyes report: left and right picture, RGBA, width and height of each, and their age, s. */
 export interface Glance {
   pixels: Uint8ClampedArray<ArrayBuffer>;
   sizes: [[number, number], [number, number]];
   late: number;
 }
 
-/** What comes with the numbers of a frame. */
+/** The data that come with the numbers of a frame. */
 export interface Moment {
   time: number;
   steps: number;
@@ -137,13 +137,13 @@ export interface Moment {
   pace: number;
   playing: boolean;
   truncated: boolean;
-  /** Whether a task has ended, which goes on with its next episode only. */
+  /** Whether a task has ended; only its next episode can continue. */
   over: boolean;
   contacts: number;
   score: Score;
   recorded: number | null;
   replay: { done: number; of: number } | null;
-  /** Moments that can be gone to, and where time is among them, in steps; whether they are those of a recording. */
+  /** The range of reachable moments and the current one, in steps; whether they are those of a recording. */
   line: { from: number; at: number; to: number; recording: boolean };
   memory: number;
   pull: { body: number; at: [number, number, number]; force: number } | null;
@@ -151,7 +151,7 @@ export interface Moment {
 
 export type PolicyName = "babbling" | "random" | "sine" | "zero" | "model";
 
-/** What the MIMo beside the first has of his own: age, months, or null for the original; policy; delays, ms. */
+/** The own settings of the MIMo beside the first: age, months, or null for the original; policy; delays, ms. */
 export interface Twin {
   age: number | null;
   policy: PolicyName;
@@ -159,7 +159,7 @@ export interface Twin {
   motor: number;
 }
 
-/** What makes a page: enough to continue with the same bits. */
+/** The state of a page, enough to continue with the same bits. */
 export interface PageState {
   settings: Settings;
   seed: number;
@@ -173,7 +173,7 @@ export interface PageState {
   twin?: Twin | null;
   view?: number[];
   locks: string[];
-  /** The network of the policy `model`, in links and in what is remembered. */
+  /** The network of the policy `model`, in links and in the stored state. */
   network?: { name: string; size: number; url: string | null };
 }
 

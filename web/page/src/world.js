@@ -1,4 +1,4 @@
-// The page's end of the line to the worker that owns the world.
+// The page's side of the connection to the worker that owns the world.
 
 /** @typedef {import("./types").Moment} Moment */
 
@@ -121,7 +121,7 @@ export class World {
     this.to.died(why);
   }
 
-  /** @param {string} why what those hear who wait for an answer */
+  /** @param {string} why the error of all requests that wait for an answer */
   stop(why) {
     this.alive = false;
     clearInterval(this.watch);

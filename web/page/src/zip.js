@@ -6,7 +6,7 @@ const damaged = (/** @type {string} */ how) => new Error(`The archive is ${how}.
 /**
  * Reads files of an archive.
  * @param {Uint8Array<ArrayBuffer>} bytes
- * @param {(name: string, size: number) => boolean} wanted whether a file is to be read; `size` is what it says of itself, bytes
+ * @param {(name: string, size: number) => boolean} wanted whether to read a file; `size` is the one that it claims, bytes
  * @param {number} most bytes of a file, even if it claims fewer
  * @returns {Promise<[string, Uint8Array<ArrayBuffer>][] | null>} names and contents; null for files that are not archives
  */

@@ -71,7 +71,7 @@ test("a change asks before it ends a recording, and keeps what was recorded", as
   assert.deepEqual(await page.evaluate(() => [mimo.scene.settings.scene, mimo.moment.recorded]), ["crib", 40]);
   await page.locator("#scene").focus();
   await page.keyboard.press("r");
-  await page.getByRole("dialog").getByText("A reset ends the recording").waitFor();
+  await page.getByRole("dialog").getByText("A reset ends the running recording").waitFor();
   await page.keyboard.press("Escape");
   await floor.click({ force: true });
   await page.getByRole("button", { name: "End it and go on" }).click();

@@ -36,5 +36,5 @@ export function compare(app) {
     rest.hidden = !twin;
     policy.replaceChildren(...POLICIES.map(([value, text]) => el("option", { value, selected: value === twin?.policy, disabled: value === "model" && !app.model }, text)));
   });
-  return card("Side by side", on, el("p", { className: "soft small" }, "Both begin together, from the same seed, and one clock moves them. All else is as above."), rest, error);
+  return card("Side by side", on, el("p", { className: "soft small" }, "Both begin together, from the same seed, and one clock moves them. Everything else is as above."), rest, error);
 }

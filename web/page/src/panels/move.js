@@ -1,4 +1,4 @@
-// The panel that moves MIMo: a policy, sliders that one holds, locks, the spring of the pointer.
+// The panel that moves MIMo: a policy, sliders that hold joints, locks, the spring of the pointer.
 import { el, say } from "../dom.js";
 import { PARTS, capital, readable, split } from "../names.js";
 import { button, card, choice, drop, slider } from "./controls.js";
@@ -87,7 +87,7 @@ function pulling(app) {
   });
   return card(
     "Pull",
-    el("p", { className: "soft small" }, "Drag any part in the scene. The spring is as stiff as the part is heavy."),
+    el("p", { className: "soft small" }, "Drag any part in the scene. The heavier the part, the stiffer the spring."),
     strength,
     el("div", { className: "row" }, which, up, force),
   );

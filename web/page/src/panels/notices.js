@@ -1,8 +1,8 @@
-// Messages: what happened, in words, with what one can do about it; and questions.
+// Messages about events, with the actions that they offer; and questions.
 import { $, el, say } from "../dom.js";
 import { button } from "./controls.js";
 
-/** Milliseconds that a message stays. Errors, and what offers something to do, stay until they are closed. */
+/** Milliseconds that a message stays. Errors, and messages with actions, stay until they are closed. */
 const STAY = 5000;
 
 /** @param {import("../app.js").App} app */

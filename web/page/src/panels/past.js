@@ -1,4 +1,4 @@
-// The line of time: back through the last half minute, or through a recording that plays, and on from there.
+// The timeline: back through the last half minute, or through a recording that plays, and on from there.
 import { $ } from "../dom.js";
 
 /** Seconds by which the arrow keys move, and Page Up and Page Down. */

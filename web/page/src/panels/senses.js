@@ -46,7 +46,7 @@ function eyes(app, change) {
     foveation.set(Number(s.vision_foveation) || 0);
     if (s.vision_active !== true) lent = false;
   });
-  const hint = "A newborn sees a blur, and the middle of an eye more than its edge. Both show in the tab Watch; the original MIMo counts as 18 months old.";
+  const hint = "A newborn sees a blur, and the middle of an eye sees more than its edge. Both show in the tab Watch; the original MIMo counts as 18 months old.";
   return [acuity, foveation, el("p", { className: "soft small" }, hint)];
 }
 

@@ -98,7 +98,7 @@ function scene(app) {
   const line = (/** @type {string} */ title, /** @type {HTMLElement} */ control, /** @type {string} */ hint) =>
     el("div", { style: "display:grid;gap:5px" }, el("div", { className: "small" }, title), control, hint ? el("p", { className: "soft small" }, hint) : null);
   const place = line("Scene", places, "");
-  const body = line("Body", bodies, "Hand regard has the body with fingers, all else the one with mittens.");
+  const body = line("Body", bodies, "Hand regard has the body with fingers, the other behaviors the one with mittens.");
   return card(
     "World",
     line("Behavior", behaviors, ""),
@@ -137,7 +137,7 @@ function room(app) {
   });
   return card(
     "A room of your own",
-    el("p", { className: "soft small" }, "An MJCF document in which MIMo is included beside furniture and toys, with its pictures. No server sees it; a link that you copy holds it where it is small."),
+    el("p", { className: "soft small" }, "An MJCF document in which MIMo is included beside furniture and toys, with its pictures. No server sees it; a link that you copy holds it if it is small."),
     place,
     el("div", { className: "row" }, folder, el("a", { className: "button", href: "./room.xml", download: "my_room.xml" }, "Save one to start from")),
     list,

@@ -1,4 +1,4 @@
-// The panel of things to take away: a link, a recording, a picture, a video.
+// The panel for sharing: a link, a recording, a picture, a video.
 import { seconds } from "../announce.js";
 import { download, el, say } from "../dom.js";
 import { fromFile, toFile } from "../recording.js";
@@ -58,7 +58,7 @@ function tape(app) {
     say(record, on ? "Stop" : "Record");
     record.classList.toggle("recording", on);
     if (m.replay) say(state, `Replaying ${seconds(app, m.replay.done)} of ${seconds(app, m.replay.of)}`);
-    else if (on) say(state, `Recording: ${seconds(app, m.recorded ?? 0)}. Pulling and locking wait until it ends, as a recording knows actions only.`);
+    else if (on) say(state, `Recording: ${seconds(app, m.recorded ?? 0)}. Pulling and locking wait until it ends, because a recording holds only actions.`);
     else say(state, last ? `Recorded ${seconds(app, last.steps)}, ${last.steps} steps.` : "A recording starts a new episode from this very pose.");
   });
   app.on("tape", (/** @type {{ recording: import("../types").Recording }} */ { recording }) => {

@@ -1,4 +1,4 @@
-// Signals over the last seconds: what one picks, each in a strip of its own.
+// Signals over the last seconds: those that users pick, each in a strip of its own.
 import { el, say } from "../dom.js";
 import { readable } from "../names.js";
 import { card } from "./controls.js";

@@ -17,14 +17,14 @@ export function watch(app) {
  * @param {string} title
  */
 function eyes(app, event, title) {
-  // as one faces MIMo, its right eye is on the left
+  // the viewer faces MIMo, so his right eye is on the left
   const sides = ["right", "left"].map((side) => {
     const canvas = el("canvas", { width: 64, height: 64, role: "img", "aria-label": event === "eyes" ? `What the ${side} eye sees` : `What the second MIMo’s ${side} eye sees` });
     return { canvas, figure: el("figure", {}, canvas, el("figcaption", {}, `${capital(side)} eye`)) };
   });
   const note = el("p", { className: "soft small" });
   app.on(event, (/** @type {import("../types").Glance} */ { pixels, sizes, late }) => {
-    say(note, [optics(event === "eyes" ? app.state.settings : (app.second.scene?.settings ?? {}), late), ...(plain(pixels) ? ["Nothing in sight but a plain surface, as the ceiling over the crib is."] : [])].filter(Boolean).join(". "));
+    say(note, [optics(event === "eyes" ? app.state.settings : (app.second.scene?.settings ?? {}), late), ...(plain(pixels) ? ["Nothing in sight but a plain surface, such as the ceiling over the crib."] : [])].filter(Boolean).join(". "));
     const [left, right] = sizes.map(([width, height]) => 4 * width * height);
     const pictures = [pixels.subarray(left, left + right), pixels.subarray(0, left)];
     sides.forEach(({ canvas }, i) => {
@@ -161,7 +161,7 @@ function skin(app) {
   app.on("scene", (/** @type {import("../types").Scene} */ scene) => {
     const n = scene.skin.of.length;
     for (const box of [glow, dots]) box.hidden = n === 0;
-    say(count, n ? `${n.toLocaleString("en")} sensors. Each glows with the force upon it and fades when it ends.` : "This configuration has no sense of touch. Turn on touch_active in Setup.");
+    say(count, n ? `${n.toLocaleString("en")} sensors. Each glows with the force on it and fades when it ends.` : "This configuration has no sense of touch. Turn on touch_active in Setup.");
     follow.input.checked = stage.orbit.follow;
   });
   return card("In the scene", count, glow, dots, arrows, shadows, follow);

@@ -1,4 +1,4 @@
-// The renderer that draws here: a graphics card, or the processor in its place.
+// The renderer in use: a graphics card, or the processor instead.
 
 /** Names of renderers that run on the processor. */
 const SOFTWARE = /swiftshader|llvmpipe|softpipe|software|basic render/i;

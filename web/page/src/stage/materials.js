@@ -1,4 +1,4 @@
-// Materials for the model's: its colours and images under the page's light.
+// The page's materials for the model's: its colours and images under the page's light.
 import {
   Color,
   CubeTexture,

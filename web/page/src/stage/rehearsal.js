@@ -1,5 +1,5 @@
-// Compiling shaders takes longer than loading the world. They are compiled meanwhile, for objects like those of the scenes
-// that are never drawn.
+// Compiling shaders takes longer than loading the world. They are compiled meanwhile, for objects that are like those of the
+// scenes but never drawn.
 import { Group } from "three";
 import { Bodies } from "./bodies.js";
 import { Skin } from "./skin.js";

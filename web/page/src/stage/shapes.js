@@ -3,7 +3,7 @@ import { BoxGeometry, BufferAttribute, BufferGeometry, CapsuleGeometry, Cylinder
 
 /** @typedef {import("../types").Drawable} Drawable */
 
-/** Planes reach further than one sees; the renderer needs an end. */
+/** Planes reach further than is visible; the renderer needs an end. */
 const FAR = 12;
 
 /**

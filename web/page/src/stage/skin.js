@@ -1,4 +1,4 @@
-// MIMo's touch: each sensor a small disc on its skin, glowing with the force upon it.
+// MIMo's touch: each sensor is a small disc on his skin, glowing with the force on it.
 import {
   BufferAttribute,
   DataTexture,

@@ -30,7 +30,7 @@ export class Stage {
     this.renderer = new WebGLRenderer({ canvas, antialias: !plain, powerPreference: "high-performance" });
     this.renderer.toneMapping = NeutralToneMapping;
     this.renderer.info.autoReset = false;
-    // asking for errors waits for the compiler of the graphics card
+    // a check for errors waits for the compiler of the graphics card
     this.renderer.debug.checkShaderErrors = false;
     this.root = new Root();
     this.orbit = new Orbit();
@@ -48,7 +48,7 @@ export class Stage {
     this.bodyPoses = new Float32Array(0);
     /** @type {[number, number, number] | null} where the pointer pulls to */
     this.target = null;
-    /** Milliseconds of script of the last frames, for those who measure. */
+    /** Milliseconds of script of the last frames, for measurements. */
     this.cost = new Float32Array(120);
     this.frames = 0;
     this.busy = false;
@@ -83,7 +83,7 @@ export class Stage {
 
   /** Compiles the shaders while the world is loaded. */
   async compile() {
-    // kept, so that what was compiled is
+    // kept, so that the compiled shaders are
     this.rehearsed = rehearsal(this.shared).add(this.studio.ground.clone());
     await this.renderer.compileAsync(this.rehearsed, this.orbit.camera, this.root);
     // some graphics finish a shader only when something is drawn with it; the scene is still veiled
@@ -222,7 +222,7 @@ export class Stage {
     this.peer.invalidate();
   }
 
-  /** Gives the graphics back. */
+  /** Frees the graphics. */
   dispose() {
     if (this.peer) this.peer.peer = null;
     cancelAnimationFrame(this.pending);

@@ -36,7 +36,7 @@ function read(text, assets) {
 export class PageEnv {
   /**
    * @param {Settings | string} settings values by key, or the text of a file
-   * @param {Record<string, Uint8Array>} [assets] files of a room of one's own
+   * @param {Record<string, Uint8Array>} [assets] files of a custom room
    */
   constructor(settings, assets) {
     this.env = new Env(settings, "configuration", assets);

@@ -1,10 +1,10 @@
-// Pictures of the eyes on their way to being seen: vision may be late.
+// Pictures of the eyes that wait until they are reported: vision may be late.
 
 /** Pictures that are kept at most. */
 const KEPT = 256;
 
 export class Glances {
-  /** @param {number} late seconds between seeing and noticing */
+  /** @param {number} late seconds from a picture to its report */
   constructor(late) {
     this.late = late;
     /** @type {{ time: number, pixels: Uint8ClampedArray<ArrayBuffer> }[]} */

@@ -114,7 +114,7 @@ const answers = {
     live?.clock.play(false);
     const last = live && { settings: live.env.yaml, assets: live.env.assets, snapshot: live.env.snapshot(), seed: 0, locks: [] };
     live?.stay();
-    // two worlds at once would take twice the memory, and leave it in pieces
+    // two worlds at once would take twice the memory, and fragment it
     live?.env.free();
     /** @type {PageEnv} */
     let env;
@@ -146,7 +146,7 @@ const answers = {
   play(/** @type {boolean} */ on) {
     wanted = on;
     if (on) live?.stay();
-    live?.clock.play(on); // one that is being made plays when it is there
+    live?.clock.play(on); // a world under construction plays when it is ready
     if (!on) live?.show();
   },
   asleep(/** @type {boolean} */ asleep) {

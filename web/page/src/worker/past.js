@@ -1,4 +1,4 @@
-// The past of a world: snapshots, and between them what was done, so that every moment is reached again with the same bits.
+// The past of a world: snapshots, and the inputs between them, so that every moment can be reached again with the same bits.
 
 /** Seconds between snapshots. */
 const APART = 0.5;
@@ -10,8 +10,8 @@ const MOST = 128;
 /** @typedef {{ bytes: Uint8Array, truncated: boolean }} Key a snapshot, and other data of its moment */
 /** @typedef {{ body: number, force: [number, number, number], at: [number, number, number] }} Pull */
 /**
- * Steps between two snapshots. `draws` tells where an action was drawn by chance; `cut` whether something other than a step led to its
- * snapshot, as a lock does.
+ * Steps between two snapshots. `draws` marks actions that were drawn at random; `cut` is whether something other than a step, such as a
+ * lock, led to its snapshot.
  * @typedef {{ start: number, room: number, actions: Float32Array, draws: Uint8Array | null, pulls: Map<number, Pull>, key: Key | null, cut: boolean }} Stretch
  */
 
@@ -19,7 +19,7 @@ export class Past {
   /**
    * @param {number} width numbers of an action
    * @param {number} seconds of a step
-   * @param {import("../types").Recording | null} [recording] what will be done, if that is known
+   * @param {import("../types").Recording | null} [recording] the coming steps, if they are known
    */
   constructor(width, seconds, recording = null) {
     this.width = width;
@@ -91,7 +91,7 @@ export class Past {
    * Stores a step.
    * @param {Stretch} stretch that it belongs to
    * @param {Float32Array} action
-   * @param {boolean} drawn whether it was drawn by chance
+   * @param {boolean} drawn whether it was drawn at random
    * @param {Pull | null} pull
    */
   add(stretch, action, drawn, pull) {
@@ -99,7 +99,7 @@ export class Past {
     stretch.actions.set(action, i * this.width);
     if (stretch.draws) stretch.draws[i] = Number(drawn);
     if (pull) stretch.pulls.set(i, pull);
-    this.recording = null; // life has gone on after it
+    this.recording = null; // the run has continued after it
     this.last = ++this.at;
     while (this.stretches.length > 1 && this.stretches[1].start <= this.last - this.kept) this.stretches.shift();
   }

@@ -4,7 +4,7 @@
 
 export class Spring {
   constructor() {
-    /** The angular frequency of the pulled body, rad/s: stiffness is its square times the mass that the point feels. */
+    /** The angular frequency of the pulled body, rad/s: stiffness is its square times the effective mass at the point. */
     this.strength = 12;
     /** @type {{ body: number, point: [number, number, number], target: [number, number, number] } | null} */
     this.held = null;
@@ -21,9 +21,9 @@ export class Spring {
   }
 
   /**
-   * Computes the point in the world and the force upon it.
+   * Computes the point in the world and the force on it.
    * @param {number[]} pose position and quaternion of the body
-   * @param {number} mass what the point feels, kg
+   * @param {number} mass effective mass at the point, kg
    * @param {number} seconds since the last call
    * @returns {{ at: [number, number, number], force: [number, number, number] } | null}
    */

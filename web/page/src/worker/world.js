@@ -77,7 +77,7 @@ export class LiveWorld {
     this.clock.speed = movement.speed;
   }
 
-  /** Fills the action from the policy, then from what is held. */
+  /** Fills the action from the policy, then from the held sliders. */
   decide() {
     const { policy, seed, vigour, held } = this.movement;
     const { env, action } = this;
@@ -102,7 +102,7 @@ export class LiveWorld {
     this.twin?.stay();
   }
 
-  /** Forgets what comes next, here and beside. */
+  /** Clears the known future, here and beside. */
   forget() {
     this.goal = null;
     this.past.forget();
@@ -162,7 +162,7 @@ export class LiveWorld {
     if (past.recording && !past.known && !this.quiet) this.endReplay();
   }
 
-  /** The force of the spring, where something is held. */
+  /** The force of the spring, if a body is held. */
   pulled() {
     const { env, spring } = this;
     const { held } = spring;
@@ -301,7 +301,7 @@ export class LiveWorld {
 
   record() {
     this.single();
-    if (this.env.locksDiffer) throw new Error("A recording knows actions only, so it needs the locks of the configuration: unlock what you locked, or choose the locks in Setup.");
+    if (this.env.locksDiffer) throw new Error("A recording holds only actions, so it needs the locks of the configuration: unlock what you locked, or choose the locks in Setup.");
     this.settle();
     const start = this.env.start();
     this.env.resetTo(start);
