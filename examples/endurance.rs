@@ -1,14 +1,14 @@
-//! Long runs, and starts that make no sense: what the simulation withstands. Prints tables of Markdown.
+//! Long runs and starts that make no sense, to show what the simulation withstands. Prints Markdown tables.
 //!
 //! ```sh
 //! cargo run --release --features rapier --example endurance -- steps 10000000   # over scenes, bodies, actuation models and engines
 //! cargo run --release --features rapier --example endurance -- starts 50000     # interpenetration, 10^6 rad/s and more
-//! cargo run --release --features rapier --example endurance -- steps 10000000 'crib | v2'   # the rows that begin so
+//! cargo run --release --features rapier --example endurance -- steps 10000000 'crib | v2'   # the rows that begin with this
 //! ```
 //!
-//! A step is an error of its type or leaves finite numbers; a twin that is restored from a snapshot continues with the same bits; memory
-//! does not grow; no start takes long, and after each the environment starts as ever. Whatever is not so ends the program. Of the steps one
-//! in a hundred has touch and eyes, and one in two hundred, as of the starts one in ten, is the Rapier engine's, which is slow.
+//! A step leaves finite numbers or returns an error of its type; a twin that is restored from a snapshot continues with the same bits;
+//! memory does not grow; no start takes long, and after each the environment starts as before. Anything else ends the program. One step in
+//! a hundred has touch and eyes. One step in two hundred, and one start in ten, uses the Rapier engine, which is slow.
 //! Times are CPU time on Linux.
 
 use std::error::Error;
@@ -26,7 +26,7 @@ type Result<T> = std::result::Result<T, Box<dyn Error>>;
 const TWIN_EVERY: u64 = 1000;
 /// Steps that a twin makes.
 const TWIN_FOR: u64 = 10;
-/// Steps for which the kind of action stays.
+/// Steps for which the kind of action is kept.
 const KIND_FOR: u64 = 250;
 /// Steps from one with touch and eyes to the next.
 const SENSES_SHARE: u64 = 100;
@@ -175,7 +175,7 @@ fn endure(config: Config, steps: u64, seed: u64) -> Result<u64> {
     let mut rng = NumpyRng::seed(seed);
     let mut action = vec![0.0; low.len()];
     let (mut errors, mut twins, mut fastest, mut kind, mut early) = (0, 0, 0.0_f64, 0, 0);
-    let mut beside = false; // the twin goes beside it
+    let mut beside = false; // the twin runs beside it
     env.reset(Some(seed))?;
     twin.reset(Some(seed + 1))?;
     for k in 0..steps {
@@ -264,7 +264,7 @@ fn absurd(rng: &mut NumpyRng, qpos: &mut [f64], qvel: &mut [f64]) {
     }
     let one = below(rng, qpos.len());
     match kind {
-        3 => qpos.fill(0.0), // everything in one place, quaternions of no length
+        3 => qpos.fill(0.0), // everything in one place, quaternions of zero length
         4 => qpos[one] = ODD[below(rng, 7)],
         5 => qvel[one % qvel.len()] = ODD[below(rng, 7)],
         _ => {}

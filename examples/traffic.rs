@@ -1,4 +1,4 @@
-//! Prints the bytes of an observation that is sent between machines, unpacked and packed: touch as the active sensors (their numbers and
+//! Prints the size of an observation that is sent between machines, in bytes, unpacked and packed: touch as the active sensors (their numbers and
 //! forces), pictures as PNG, which is lossless. The rest is unchanged.
 
 use babybench::config::VisionOutput;

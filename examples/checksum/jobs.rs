@@ -18,7 +18,7 @@ pub enum Kind {
     Picture,
 }
 
-/// Kinds by name; the first is meant where none is named.
+/// Kinds by name; the first is the default.
 pub const KINDS: [(&str, Kind); 5] = [
     ("episode", Kind::Episode),
     ("variant", Kind::Variant),

@@ -9,7 +9,7 @@ const module = new WebAssembly.Module(readFileSync(path));
 const { memory, memory_of, line, name, keep, restore } = new WebAssembly.Instance(module, {}).exports;
 
 function room(length) {
-  const at = memory_of(length); // may make the memory grow, which makes its buffer another
+  const at = memory_of(length); // may grow the memory, which replaces its buffer
   return new Uint8Array(memory.buffer, at, length);
 }
 const read = (length) => Buffer.from(room(length)).toString();

@@ -19,7 +19,7 @@ pub struct Outcome {
     pub success: bool,
 }
 
-/// An episode to be run: a policy, a seed, and the number that is 1 in the desired goal, if it is not left to chance.
+/// An episode to be run: a policy, a seed, and the number that is 1 in the desired goal, if it is not random.
 pub struct Episode<'a> {
     pub weights: &'a [f64],
     pub seed: u64,

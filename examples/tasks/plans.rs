@@ -9,7 +9,7 @@ use crate::linear::{Design, Feature};
 /// A stage of training: some weights are free, the others stay.
 pub struct Stage {
     pub free: Vec<usize>,
-    /// The number that is 1 in the desired goal; left to chance by default.
+    /// The number that is 1 in the desired goal; random by default.
     pub goal: Option<usize>,
     pub generations: usize,
     /// Candidates of a generation.
@@ -84,7 +84,7 @@ impl Plan {
         Ok(plan)
     }
 
-    /// Returns what is missing to the goal, m, if that counts.
+    /// Returns the remaining distance to the goal, m, if it counts.
     pub fn distance(&self, env: &Env) -> Option<f64> {
         let target = env.goal().desired.iter().position(|v| *v > 0.0)?;
         let xpos = &env.state().xpos;
@@ -188,7 +188,7 @@ fn turned() -> Vec<Feature> {
     vec![way, weight(0), weight(1), weight(2)]
 }
 
-/// Finds the joint of each number of an action; muscles have a block of numbers after another.
+/// Finds the joint of each number of an action; muscles have one block of numbers after another.
 fn drives(env: &Env) -> Result<Vec<Drive>, Box<dyn std::error::Error>> {
     let (model, actuators) = (env.model(), env.blueprint().actuation().actuators());
     let senses = env.senses().proprioception();

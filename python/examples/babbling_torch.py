@@ -1,9 +1,9 @@
-"""Goal babbling in PyTorch: a vector of infants learns to touch itself, without a reward and without a network.
+"""Goal babbling in PyTorch: a vector of infants learn to touch themselves, without a reward and without a network.
 
 It is the policy ``babbling`` of the command line (the guide says more: records, measures, benchmarks) with one memory
-for all infants of a vector. An action is held for 0.05 to 1 s, a *movement*. Remembered are the posture in which it began, the
-touches that it added to those of its episode, and those that it could have added. A movement promises, in a posture, the touches
-that it led to from similar ones, rare ones above all; it is done again, varied, or put together with one of the other arm.
+for all infants of a vector. An action is held for 0.05 to 1 s, a *movement*. The memory keeps the posture in which it began, the
+touches that it added to those of its episode, and those that it could have added. In a posture, a movement promises the touches
+that it led to from similar postures, above all rare ones; it is repeated, varied, or combined with one of the other arm.
 
     pip install torch
     python babbling_torch.py                                  # five seeds of a million steps, a minute or two each on two cores
@@ -37,7 +37,7 @@ class Memory:
     """Movements that led to a touch, with their last outcomes."""
 
     def __init__(self, actions: int, angles: int, pairs: int) -> None:
-        """Makes room."""
+        """Allocates the memory."""
         self.action = torch.zeros(ROOM, actions)
         self.duration = torch.ones(ROOM, dtype=torch.long)
         self.times = torch.zeros(ROOM, dtype=torch.long)
@@ -82,7 +82,7 @@ class Babbling:
     """The infants' movements, and their memory."""
 
     def __init__(self, names: list[str], low: np.ndarray, high: np.ndarray, angles: int, pairs: int) -> None:
-        """Knows nothing yet."""
+        """Starts untrained."""
         self.low, self.high = torch.from_numpy(low), torch.from_numpy(high)
         arms = ("shoulder", "elbow", "wrist", "finger")
         of = [[side in name and any(part in name for part in arms) for name in names] for side in ("right", "left")]
@@ -136,7 +136,7 @@ class Babbling:
 
 
 def run(policy: Babbling, envs: babybench.VectorEnv, settled: bool = False, seed: int | None = None) -> np.ndarray:
-    """Lives an episode in all environments; returns which pairs touched: (environments, 2 * geoms)."""
+    """Runs an episode in all environments; returns which pairs touched: (environments, 2 * geoms)."""
     observation, info = envs.reset(seed=seed)
     angles = envs.proprioception.slices["angles"]
     n = envs.num_envs
@@ -152,7 +152,7 @@ def run(policy: Babbling, envs: babybench.VectorEnv, settled: bool = False, seed
         for k in due if running and not settled else []:
             action, duration, at, began, before = running[k]
             gained = touched[k] & ~before
-            # what leads nowhere is not worth a place
+            # movements without an effect are not worth a place
             if at >= 0 or gained.any():
                 at = at if at >= 0 else policy.memory.add(action, duration)
                 policy.memory.learn(at, began, gained, ~before)

@@ -1,4 +1,4 @@
-"""Runs CleanRL's script for continuous actions, as it is, with MIMo: he is rewarded for touches that are new in the episode.
+"""Runs CleanRL's script for continuous actions, unchanged, with MIMo: he is rewarded for touches that are new in the episode.
 
 CleanRL's scripts make environments by a Gymnasium name and flatten their observations; this file registers such a
 name and starts the script that it is given::
@@ -27,7 +27,7 @@ class Novelty(gymnasium.Wrapper[Any, Any, Any, Any]):
     """Proprioception and touch, with a reward for each sensor that feels something for the first time in the episode."""
 
     def reset(self, **options: Any) -> tuple[Any, dict[str, Any]]:
-        """Starts an episode without knowledge."""
+        """Starts an episode without touches."""
         observation, info = self.env.reset(**options)
         self._known = observation["touch"] != 0
         return observation, info

@@ -6,7 +6,7 @@ Both record a run with the same actions, each in its own Python; then the record
     cd BabyBench2025_Starter_Kit && python .../compare_with_kit.py record kit.npz      # where the kit is
     python compare_with_kit.py compare kit.npz ours.npz
 
-Motion is chaotic: after some hundred steps with contacts two runs differ however near they began.
+Motion is chaotic: after some hundred steps with contacts two runs differ however close they began.
 """
 
 from __future__ import annotations

@@ -37,7 +37,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--config", default="self_touch", help="an example, or a YAML file")
     parser.add_argument("--envs", type=int, default=16)
-    parser.add_argument("--steps", type=int, default=20_000, help="of all environments together")
+    parser.add_argument("--steps", type=int, default=20_000, help="steps of all environments together")
     parser.add_argument("--rollout", type=int, default=128, help="steps of each environment between two updates")
     parser.add_argument("--out", default="ppo_selftouch.zip")
     arguments = parser.parse_args()

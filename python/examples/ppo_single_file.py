@@ -1,6 +1,6 @@
-"""PPO in one file, after CleanRL: nothing hidden, everything to be changed.
+"""PPO in one file, after CleanRL: nothing is hidden, and everything can be changed.
 
-The intrinsic reward is novelty of touch: a sensor counts the more, the less often it has been touched before in this run.
+The intrinsic reward is novelty of touch: the less often a sensor has been touched in this run, the more it counts.
 Needs ``pip install torch``; run it with ``python ppo_single_file.py --total-steps 200000``.
 """
 

@@ -37,7 +37,7 @@ def main() -> None:
     print(f"  the right hand has touched: {', '.join(info['right_hand_parts']) or 'nothing'}")
     print(f"  the left hand has touched: {', '.join(info['left_hand_parts']) or 'nothing'}")
 
-    # any moment can be come back to
+    # any moment can be restored
     before = env.snapshot()
     action = env.action_space.sample()
     once = env.step(action)[0]["observation"]

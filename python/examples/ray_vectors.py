@@ -2,7 +2,7 @@
 
 Augmented random search (Mania, Guy, Recht, 2018): each actor tries directions in the space of linear policies, plus and
 minus, on the environments of its vector; the driver follows the directions that touched the body most. Only seeds and
-returns travel, as every actor makes the directions from their seeds.
+returns travel, because every actor makes the directions from their seeds.
 
 Needs ``pip install ray``. On this machine: ``python ray_vectors.py``. On a cluster, start Ray on the machines
 (``ray start --head``, then ``ray start --address=HEAD:6379`` on the others, with this package installed on all of them)
@@ -62,12 +62,12 @@ class Explorer:
 def main() -> None:
     """Runs the example."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--address", help="of a Ray cluster; without, Ray starts on this machine")
+    parser.add_argument("--address", help="address of a Ray cluster; by default Ray starts on this machine")
     parser.add_argument("--workers", type=int, default=2, help="actors")
-    parser.add_argument("--cpus", type=int, default=1, help="of each actor, and threads of its vector")
-    parser.add_argument("--directions", type=int, default=8, help="tried by each actor in an iteration")
+    parser.add_argument("--cpus", type=int, default=1, help="CPUs of each actor, and threads of its vector")
+    parser.add_argument("--directions", type=int, default=8, help="directions that each actor tries in an iteration")
     parser.add_argument("--iterations", type=int, default=20)
-    parser.add_argument("--steps", type=int, default=200, help="of an episode")
+    parser.add_argument("--steps", type=int, default=200, help="steps of an episode")
     args = parser.parse_args()
 
     if args.address:

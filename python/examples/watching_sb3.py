@@ -1,4 +1,4 @@
-"""An infant that learns to look at its hands, as an algorithm of Stable-Baselines3, without a reward.
+"""An infant who learns to look at his hands, as an algorithm of Stable-Baselines3, without a reward.
 
 It is the policy ``watching`` of the command line (the guide says more: records, measures, benchmarks) with one archive of
 postures for all infants of a vector. In a trial of a second an infant takes a posture, moves the right wrist, then the left one;
@@ -49,7 +49,7 @@ class Body:
     """The joints that an action moves: their places in proprioception, their ranges, and the limb of each."""
 
     def __init__(self, env: babybench.Env) -> None:
-        """Looks at an environment."""
+        """Reads the joints of an environment."""
         slices, names = env.proprioception.slices, env.actuator_names
         joints = env.array("actuator_trnid") - 1  # the first joint places MIMo, and has no angle
         self.angles, self.velocities = joints + slices["angles"].start, joints + slices["velocities"].start
@@ -104,7 +104,7 @@ class Trial:
     """A posture, and the mean visibility of each hand over its trials."""
 
     def __init__(self, posture: np.ndarray, seen: np.ndarray) -> None:
-        """Was tried once."""
+        """Starts with one trial."""
         self.posture, self.seen, self.times = posture, seen, 1
 
     def worth(self, hand: int | None) -> float:
@@ -116,7 +116,7 @@ class Archive:
     """The best trials of each hand and of both, the best ones first, and what is tried next."""
 
     def __init__(self, body: Body, rng: np.random.Generator) -> None:
-        """Knows nothing yet."""
+        """Starts empty."""
         self.body, self.rng = body, rng
         self.lists: dict[int | None, list[Trial]] = {0: [], 1: [], None: []}
 
@@ -152,7 +152,7 @@ class Archive:
         limbs = [(body.head, head), *((body.arms[hand], parents[hand]) for hand in range(2))]
         deviation = rng.choice(VARIATIONS) * 0.5 * (body.high - body.low)
         for hand, (limb, parent) in enumerate(limbs, -1):
-            # an arm whose hand was not seen is drawn anew
+            # an arm whose hand was not seen is drawn again
             if parent and (hand < 0 or parent.seen[hand] > SEEN):
                 varied = np.clip(parent.posture + deviation * rng.normal(size=len(posture)), body.low, body.high)
                 posture[limb] = varied[limb]
@@ -163,7 +163,7 @@ class Sight:
     """Changes in the pictures of many infants while each of their wrists moved."""
 
     def __init__(self, body: Body, infants: int, size: int) -> None:
-        """Makes room."""
+        """Allocates the pictures."""
         self.body, self.changes = body, np.zeros((2, infants, 2, size, size), np.float32)
         square = ((np.arange(size) - (size - 1) / 2) / (size / 2)) ** 2
         r2 = square[:, None] + square
@@ -191,7 +191,7 @@ class Sight:
     @staticmethod
     def shades(observation: dict[str, np.ndarray]) -> np.ndarray:
         """Returns the pictures of both eyes in shades of grey: (infants, eyes, height, width)."""
-        # Stable-Baselines3 hands over colours first
+        # Stable-Baselines3 puts colours first
         eyes = [observation[f"eye_{side}"].mean(1, dtype=np.float32) for side in ("left", "right")]
         return np.stack(eyes, 1)
 

@@ -1,4 +1,4 @@
-//! The intrinsic reward: rare touches of the own body, and feelings that were not foreseen.
+//! The intrinsic reward: rare touches of his own body, and feelings that were not predicted.
 
 use babybench::Env;
 use babybench::model::Model;
@@ -75,7 +75,7 @@ pub struct Novelty {
 }
 
 impl Novelty {
-    /// Knows no touch yet.
+    /// Starts without any touch.
     pub fn new(pairs: usize) -> Self {
         Self {
             shares: vec![0.0; pairs],
@@ -105,7 +105,7 @@ pub struct Foresight {
 }
 
 impl Foresight {
-    /// Makes a model that foresees `feelings` numbers from `inputs` numbers.
+    /// Makes a model that predicts `feelings` numbers from `inputs` numbers.
     ///
     /// # Errors
     /// Errors of candle.
@@ -138,7 +138,7 @@ impl Foresight {
             .collect())
     }
 
-    /// Learns to foresee.
+    /// Learns to predict.
     ///
     /// # Errors
     /// Errors of candle.

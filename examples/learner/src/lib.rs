@@ -1,8 +1,8 @@
-//! An infant that learns to touch itself out of curiosity: PPO on a [`VectorEnv`](babybench::VectorEnv).
+//! An infant who learns to touch himself out of curiosity: PPO on a [`VectorEnv`](babybench::VectorEnv).
 //!
 //! - [`curiosity`]: the reward, from the sense of touch alone. A touch between a hand and another part of the body is felt
-//!   on both sides; it is worth the more, the rarer it has been lately. What the skin feels next and was not foreseen is
-//!   worth something too.
+//!   on both sides; the rarer it has been lately, the more it is worth. Feelings of the skin that were not predicted are
+//!   worth something, too.
 //! - [`senses`]: what the policy knows, one row of numbers for each environment.
 //! - [`network`], [`ppo`]: the policy, and how it learns, with candle.
 //! - [`mind`]: all of this together.

@@ -25,10 +25,10 @@ pub struct Mind {
 }
 
 impl Mind {
-    /// Makes a mind that knows nothing.
+    /// Makes an untrained mind.
     ///
     /// # Errors
-    /// A scene without MIMo; what candle says.
+    /// A scene without MIMo; errors of candle.
     pub fn new(env: &Env, seed: u64) -> Result<Self, Error> {
         let (senses, touch) = (Senses::new(env), DoubleTouch::new(env.model())?);
         let mut row = Vec::new();
@@ -47,7 +47,7 @@ impl Mind {
         })
     }
 
-    /// Appends what an environment senses, normalized, and learns what is normal.
+    /// Appends what an environment senses, normalized, and updates the statistics.
     pub(crate) fn sense(&mut self, env: &Env, touched: &[bool], out: &mut Vec<f32>) {
         let start = out.len();
         let progress = env.info().steps as f32 / env.config().max_episode_steps.max(1) as f32;
@@ -56,7 +56,7 @@ impl Mind {
         self.normalizer.apply(&mut out[start..]);
     }
 
-    /// Writes what the policy decides to do, with the noise that it has learned with, as an action of the environment.
+    /// Writes the policy's decision, with the noise of its training, as an action of the environment.
     ///
     /// # Errors
     /// Errors of candle.

@@ -28,9 +28,9 @@ pub struct Experience {
     pub senses: Vec<f32>,
     /// Actions that it chose.
     pub actions: Vec<f32>,
-    /// Logarithm of the probability density of that.
+    /// Logarithm of their probability density.
     pub likelihoods: Vec<f32>,
-    /// Value that it expected of the rest of the episode.
+    /// Value that it expected for the rest of the episode.
     pub values: Vec<f32>,
     /// Rewards of the actions.
     pub rewards: Vec<f32>,
@@ -84,7 +84,7 @@ pub struct Ppo {
 }
 
 impl Ppo {
-    /// Makes a policy that knows nothing.
+    /// Makes an untrained policy.
     ///
     /// # Errors
     /// Errors of candle.

@@ -83,7 +83,7 @@ impl Training {
     /// Makes environments that log into the configuration's `save_dir`, and a mind.
     ///
     /// # Errors
-    /// As [`RunVector::start`]; what candle says.
+    /// As [`RunVector::start`]; errors of candle.
     pub fn new(blueprint: &Blueprint, kind: Kind, settings: Settings) -> Result<Self, Error> {
         let options = VectorOptions {
             threads: settings.threads,
@@ -105,7 +105,7 @@ impl Training {
     /// Trains, and calls `say` after every round.
     ///
     /// # Errors
-    /// As [`RunVector::step`]; a log that cannot be written; what candle says.
+    /// As [`RunVector::step`]; a log that cannot be written; errors of candle.
     pub fn run(&mut self, mut say: impl FnMut(usize, Round)) -> Result<Vec<Round>, Error> {
         let mut rounds = Vec::new();
         for update in 0..self.updates {
