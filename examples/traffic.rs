@@ -56,7 +56,7 @@ impl Sizes {
                 (Some(Sense::Touch), ..) => {
                     let felt = env.senses().touch_observed().ok_or("touch is observed")?;
                     self.touch[0] += size_of_val(felt.values());
-                    // two bytes say which sensor it is
+                    // two bytes identify the sensor
                     self.touch[1] += felt.touched().len() * (2 + 4 * felt.width());
                 }
                 (_, Some(VisionOutput::Rgb), Values::U8(eye)) => {

@@ -73,7 +73,7 @@ class SceneAccess:
         ``dof_frictionloss``, ``jnt_stiffness``, ``actuator_gear``; ``solref``, ``solimp``, ``margin``, ``gap`` and
         ``friction`` of geoms and pairs, and ``solref`` and ``solimp`` of joints, dofs and equalities; ``jnt_range``; ``pos`` and
         ``quat`` of bodies, geoms, sites and cameras; and the constants
-        ``body_invweight0``, ``dof_invweight0`` and ``geom_rbound``, which do not follow by themselves, as they do not in
+        ``body_invweight0``, ``dof_invweight0`` and ``geom_rbound``, which are not updated automatically, as in
         MuJoCo without ``mj_setConst``.
 
         Example:

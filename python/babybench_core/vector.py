@@ -72,7 +72,7 @@ class VectorEnv(gymnasium.vector.VectorEnv):  # type: ignore[type-arg, unused-ig
     the right and the left palm have touched in this episode, 1 or 0; or ``regards`` (N, 4), how many steps the right hand,
     then the left, was in the view of the right eye, then of the left, with ``page_regards`` and ``kit_regards``, counted as
     BabyBench's page describes it and as the kit does. ``envs.info(i)`` has the lists and names of one
-    environment. An environment whose simulation diverges is truncated and restarts; ``infos["failure"]`` says why.
+    environment. An environment whose simulation diverges is truncated and restarts; ``infos["failure"]`` has the reason.
 
     Example:
         >>> import babybench
@@ -299,13 +299,13 @@ class VectorEnv(gymnasium.vector.VectorEnv):  # type: ignore[type-arg, unused-ig
     def recv(
         self, batch_size: Optional[int] = None
     ) -> tuple[Observations, npt.NDArray[np.float64], Mask, Mask, dict[str, Any]]:
-        """Waits for the first environments that are ready, so that a slow one does not hold the others.
+        """Waits for the first environments that are ready, so that a slow one does not hold up the others.
 
         Args:
             batch_size: The number of environments to wait for; by default all that are under way.
 
         Returns:
-            As :meth:`step`, a row for each of them; ``info["env_id"]`` says which they are.
+            As :meth:`step`, a row for each of them; ``info["env_id"]`` has their numbers.
 
         Raises:
             RuntimeError: Fewer are under way.

@@ -120,7 +120,7 @@ impl Env {
             new.eq_active.clone_from(&old.eq_active);
             new.eq_offset.clone_from(&old.eq_offset);
         }
-        // random choices go on as if nothing had happened
+        // random choices continue as if nothing had happened
         std::mem::swap(&mut grown.rng, &mut self.rng);
         grown.by_hand().set_probe(self.probe.take());
         if self.shares() {

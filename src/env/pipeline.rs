@@ -102,7 +102,7 @@ impl Pipeline {
         };
         match hold {
             None => apply(stages, &mut signal),
-            // noise belongs to a sample and is held with it; delays go on in every step
+            // noise belongs to a sample and is held with it; delays advance in every step
             Some((at, hold)) => {
                 let (of_looks, of_steps) = stages.split_at_mut(*at);
                 if looked {

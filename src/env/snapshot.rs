@@ -193,7 +193,7 @@ impl Env {
         }
         let [step, steps, info_steps, ready, seed, drawn, counts @ ..] = whole;
         // headroom for counting; what tasks have in place of counters is a number
-        // tasks store a measure's bits in the place of a counter
+        // tasks store a measure's bits instead of a counter
         let counts_checked = if self.info.behavior.task().is_some() {
             &[][..]
         } else {

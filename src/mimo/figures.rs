@@ -37,7 +37,7 @@ impl BodyFigures {
         }
         kinematics(model, &mut state);
         let [soles, crown] = upright_extent(model, &state, hip);
-        // along MIMo's own axis, as he may lie
+        // along MIMo's own axis, because he may lie
         let up = column(&state.xmat[hip], 2);
         let bodies = (0..model.nbody()).filter(|&b| model.in_subtree(b, hip));
         let (mut mass, mut moment) = (0.0, 0.0);

@@ -43,7 +43,7 @@ pub struct LightSource {
     pub exponent: f32,
 }
 
-/// The way a light follows its body or another, as its [`CamLight`] says.
+/// The way a light follows its body or another, by its [`CamLight`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum LightAim {
     /// Moves and turns with its body.

@@ -153,7 +153,7 @@ class _Body:
 
 
 def _discs(axes: Any, x: Any, y: Any, radius: Any, colours: Any) -> None:
-    """Draws discs of radii in the units of the axes; in vector formats they are an image, as there are thousands."""
+    """Draws discs of radii in the units of the axes; in vector formats they are an image, because there are thousands."""
     from matplotlib.collections import EllipseCollection
 
     size = 2 * radius

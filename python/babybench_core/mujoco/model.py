@@ -173,7 +173,7 @@ class MjModel(Named, metaclass=Fields):
             return cls._made(_native.PhysicsModel.from_file(path), None)
         except OSError as error:
             if not assets:
-                return cls._made(_native.PhysicsModel.from_file(path), None)  # says what is wrong
+                return cls._made(_native.PhysicsModel.from_file(path), None)  # raises an error with the cause
             raise ValueError(f"{path}: {error.strerror}") from error
         files = _contents(assets or {})
         native = _native.PhysicsModel.from_text(text, files, folder) if assets else _native.PhysicsModel.from_file(path)

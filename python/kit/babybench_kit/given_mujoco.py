@@ -97,7 +97,7 @@ def adopt(core: Core, model: Any, path: str) -> None:
     """Uses a model as that of an environment, and passes to the engine what a program has written into it.
 
     Raises:
-        ValueError: It has other elements than the document, or numbers that a running environment cannot take over.
+        ValueError: It has other elements than the document, or numbers that a running environment cannot use.
     """
     mujoco = mujoco_module()
     assert mujoco is not None

@@ -172,7 +172,7 @@ def _bodies(path: Path) -> set[str | None]:
     try:
         return {body.get("name") for body in flat(path).iter("body")}
     except (OSError, ValueError, ElementTree.ParseError):
-        return set()  # the compiler says what is wrong
+        return set()  # the compiler reports the fault
 
 
 def kit_assets() -> Path | None:

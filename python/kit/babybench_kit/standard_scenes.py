@@ -204,7 +204,7 @@ def _parts(folder: Path, version: str) -> dict[str, ElementTree.Element]:
     own = folder / "babybench"
 
     def flattened(name: str) -> ElementTree.Element:
-        # absolute, as MuJoCo looks for them beside the document that includes the file
+        # absolute, because MuJoCo searches beside the document that includes the file
         return flat(own / name, lambda path: str(path.resolve()))
 
     meta = ElementTree.Element("mujoco", model="MIMo")

@@ -37,7 +37,7 @@ def is_own(module: Any) -> bool:
 
 
 def chosen(claimed: bool) -> bool:
-    """Returns whether this package serves: by the variable, or else as ``claimed`` says.
+    """Returns whether this package serves: by the variable, or else by ``claimed``.
 
     Raises:
         ImportError: The variable has an unknown value.

@@ -54,7 +54,7 @@ impl Motor {
     }
 }
 
-/// The motors of a scene, as a reflex looks for them.
+/// The motors of a scene, for a reflex to search.
 pub(super) struct Motors<'m> {
     pub model: &'m Model,
     actuation: &'m dyn Actuation,

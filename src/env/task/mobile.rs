@@ -253,7 +253,7 @@ impl Task for Mobile {
     }
 
     fn begin(&mut self, scene: &mut TaskScene<'_>, _desired: &mut [f64]) {
-        // kept for its allocation, as a reset allocates nothing
+        // kept for its allocation, because a reset allocates nothing
         let hung = std::mem::take(&mut self.memory.hung);
         self.memory = MobileMemory {
             hung,

@@ -92,7 +92,7 @@ const SITTING: &Angles = &[
     ("left_toes", 0.24424),
 ];
 
-/// MIMo sits, all but his right arm is locked, and he touches a part of himself with the right hand.
+/// MIMo sits, all his joints except those of the right arm are locked, and he touches a part of himself with the right hand.
 ///
 /// The desired goal has a 1 at the number of the target's body, the achieved goal a 1 at each part that the right hand or its fingers
 /// touch. The reward is 500 on success; otherwise, if the fingers feel anything, minus their distance from the target, m; otherwise -1.

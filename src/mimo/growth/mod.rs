@@ -141,7 +141,7 @@ impl Growth {
     /// # Errors
     /// Parts that the document lacks.
     pub fn apply(&self, draft: &mut Draft) -> Result<(), GrowthError> {
-        self.strengthen(draft)?; // first, as it needs the original volumes
+        self.strengthen(draft)?; // first, because it needs the original volumes
         self.sizes.resize(&self.sizes.body, draft)
     }
 

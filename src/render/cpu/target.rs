@@ -87,7 +87,7 @@ impl VisibilityBuffer {
         (all.to_bitmask() == 15).then_some(id)
     }
 
-    /// Draws a large counterclockwise triangle as `K` says: [`Opaque`] or [`Transparent`]. `record` has the indices of its
+    /// Draws a large counterclockwise triangle of the kind `K`: [`Opaque`] or [`Transparent`]. `record` has the indices of its
     /// corners among `vertices`.
     #[inline(never)]
     pub fn large<'a, S: Sampling, K>(&'a mut self, fixed: &[FixedVertex; 3], vertices: &[Vertex], record: Triangle)

@@ -161,7 +161,7 @@ impl Frame {
         }
     }
 
-    /// Rasterises the triangles that wait.
+    /// Rasterises the waiting triangles.
     #[inline(never)]
     pub fn flush(&mut self, index: usize) {
         let geometry = Geometry {
@@ -240,7 +240,7 @@ struct Geometry<'a> {
 }
 
 impl Geometry<'_> {
-    /// Rasterises the triangles that wait, as `K` says.
+    /// Rasterises the waiting triangles, of the kind `K`.
     #[inline(always)]
     fn raster<S: Sampling, K>(&self, waiting: &TriangleGroup, index: usize, target: &mut VisibilityBuffer)
     where

@@ -81,7 +81,7 @@ pub struct GpuRenderer {
     submissions: u64,
 }
 
-/// Describes the adapters of this machine, the best first, as [`GpuRenderer::adapter`] does. OpenGL is looked for only if nothing else
+/// Describes the adapters of this machine, the best first, as [`GpuRenderer::adapter`] does. OpenGL is searched only if nothing else
 /// finds a GPU; `WGPU_BACKEND` narrows the search.
 #[cfg(not(target_arch = "wasm32"))]
 pub fn adapters() -> Vec<String> {

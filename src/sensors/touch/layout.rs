@@ -118,7 +118,7 @@ pub struct SkinLayout {
 }
 
 impl SkinLayout {
-    /// Places the sensors of MIMo's skin as `touch_<part>`, `touch_scale` and `compat` say.
+    /// Places the sensors of MIMo's skin by `touch_<part>`, `touch_scale` and `compat`.
     ///
     /// Under `compat: reference` MIMo v2 has the table of v1, which has neither his fingers nor his big toes.
     ///
