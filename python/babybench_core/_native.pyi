@@ -534,7 +534,7 @@ class PhysicsData:
     def distance(
         self, geoms: tuple[int, int], most: float
     ) -> tuple[float, tuple[float, float, float], tuple[float, float, float]] | None:
-        """Returns the distance between two geoms, at most ``most``, and the points between which it is measured, m."""
+        """Returns the distance between two geoms, if it is below ``most``, and the points between which it is measured, m."""
     def forward(self, groups: int) -> None:
         """Computes everything without advancing, and updates some groups of arrays."""
     def rne_post_constraint(self) -> None:

@@ -67,7 +67,7 @@ impl<T: Number, const N: usize> ToArray for [[T; N]] {
 }
 
 impl ToArray for [Vec<f64>] {
-    /// Returns rows of the length of the longest, filled up with zeros.
+    /// Returns rows of the length of the longest, padded with zeros.
     fn to_array<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let width = self.iter().map(Vec::len).max().unwrap_or(0);
         let padded: Vec<Vec<f64>> = self

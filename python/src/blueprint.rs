@@ -70,7 +70,7 @@ impl Blueprint {
         Ok(Self { inner })
     }
 
-    /// Compiles a document, or without one the configuration's, for a program that puts resets and steps together.
+    /// Compiles a document, by default the configuration's, for a program that composes its own resets and steps.
     #[staticmethod]
     #[pyo3(signature = (config, document=None, version="v1", folder=PathBuf::new(), files=HashMap::new(), touch_spacing=Vec::new(), assets=None))]
     #[allow(clippy::too_many_arguments)] // keywords in Python

@@ -59,7 +59,7 @@ impl IntoDeserializer<'_> for Value {
     }
 }
 
-/// Reads one value; NumPy's numbers count as Python's.
+/// Reads one value; NumPy's numbers are accepted like Python's.
 fn value_of(key: &str, value: &Bound<'_, PyAny>) -> PyResult<Value> {
     if value.is_none() {
         return Ok(Value::None);

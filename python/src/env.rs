@@ -63,7 +63,7 @@ impl Env {
         Self::observed(py, inner)
     }
 
-    /// Makes anew what was made of the body as it was.
+    /// Recreates everything that was made from the earlier body.
     fn remade(py: Python<'_>, inner: &mut Inner) -> PyResult<()> {
         inner.painters = Painters::default();
         inner.second = inner.env.blueprint().second_infant();
@@ -93,7 +93,7 @@ impl Env {
         Self::remade(py, inner)
     }
 
-    /// Returns the present observation.
+    /// Returns the current observation.
     pub fn observed<'py>(py: Python<'py>, inner: &mut Inner) -> PyResult<Bound<'py, PyDict>> {
         if inner.lazy && inner.views.is_none() {
             return fresh_blind(py, &inner.env);

@@ -15,7 +15,7 @@ use pyo3::prelude::*;
 
 /// An error that has a Python exception.
 pub trait IntoException: Send {
-    /// Returns the exception that says the same.
+    /// Returns the corresponding exception.
     fn into_exception(self) -> PyErr;
 }
 
@@ -127,7 +127,7 @@ pub fn detached<T: Send, E: IntoException>(py: Python<'_>, work: impl FnOnce() -
     }
 }
 
-/// Returns what a panic said.
+/// Returns the message of a panic.
 fn message(payload: &(dyn Any + Send)) -> &str {
     let text = payload.downcast_ref::<&str>().copied();
     text.or_else(|| payload.downcast_ref::<String>().map(String::as_str))

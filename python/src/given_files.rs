@@ -15,7 +15,7 @@ pub struct GivenFiles {
 }
 
 impl GivenFiles {
-    /// Lays contents over the file system as seen from a folder.
+    /// Overlays contents on the file system as seen from a folder.
     pub fn new(files: HashMap<String, Vec<u8>>, folder: PathBuf) -> PyResult<Self> {
         let mut named = HashMap::new();
         for (name, bytes) in files {
@@ -64,7 +64,7 @@ pub struct BesideDocument {
 }
 
 impl BesideDocument {
-    /// Lays contents over the folder of a document, which must be absolute.
+    /// Overlays contents on the folder of a document, which must be absolute.
     pub fn new(files: HashMap<String, Vec<u8>>, folder: PathBuf, read_in: &str) -> PyResult<Self> {
         if !folder.is_absolute() {
             let what = format!("folder is {folder:?}: the folder of a document must be absolute");

@@ -44,7 +44,7 @@ pub fn target_of<R>(target: &Bound<'_, PyAny>, call: impl FnOnce(LockTarget<'_>)
     }
 }
 
-/// Returns what a lock came to, with the names of joints.
+/// Returns the result of a lock, with the names of joints.
 pub fn report_dict<'py>(py: Python<'py>, env: &babybench::Env, report: &LockReport) -> PyResult<Bound<'py, PyDict>> {
     let name = |joint: &usize| env.model().jnt_name[*joint].clone();
     let dict = PyDict::new(py);

@@ -119,7 +119,7 @@ pub fn model_columns<'py>(py: Python<'py>, env: &Bound<'py, Env>) -> PyResult<Bo
     columns(py, env.get().guard()?.open()?.env.model())
 }
 
-/// Sets which equality constraints hold, now and in later episodes.
+/// Sets which equality constraints are active, now and in later episodes.
 #[pyfunction]
 pub fn set_equalities(env: &Bound<'_, Env>, active: Vec<bool>) -> PyResult<()> {
     let mut guard = env.get().guard()?;
@@ -188,7 +188,7 @@ impl Numbers {
     }
 }
 
-/// Arrays that a program may write to, and what was in them.
+/// Arrays that a program may write to, and their earlier contents.
 #[pyclass(module = "babybench_core._native")]
 pub struct Watch {
     seen: Vec<Numbers>,

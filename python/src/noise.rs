@@ -1,11 +1,11 @@
-//! Movements without a purpose.
+//! Random movements.
 
 use babybench::spaces::{BoxSpace, Noise, NoiseError};
 use numpy::PyArray1;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
-/// A noise over the actions of one environment.
+/// Action noise for one environment.
 #[pyclass(module = "babybench_core._native")]
 pub struct ActionNoise {
     noise: babybench::spaces::ActionNoise,

@@ -1,4 +1,4 @@
-//! Observations as dictionaries of arrays: fresh ones, or views that each step brings up to date.
+//! Observations as dictionaries of arrays: fresh ones, or views that each step updates.
 
 use babybench::Env;
 use babybench::env::Observation;
@@ -46,7 +46,7 @@ pub fn fresh_images<'py>(py: Python<'py>, env: &Env) -> PyResult<Bound<'py, PyDi
     fresh_of(py, env, |entry| entry.image.is_some())
 }
 
-/// Returns the entries that are chosen and there.
+/// Returns the chosen entries that exist.
 fn fresh_of<'py>(
     py: Python<'py>,
     env: &Env,
@@ -117,7 +117,7 @@ struct View {
 pub struct Views {
     /// The contents of an observation.
     pub dict: Py<PyDict>,
-    /// The images, if they are drawn for those who ask.
+    /// The images, if they are drawn on request.
     pub images: Py<PyDict>,
     views: Vec<View>,
 }

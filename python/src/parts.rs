@@ -1,4 +1,4 @@
-//! The parts of a reset and of a step, for environments that put them together as the Python kit does.
+//! The parts of a reset and of a step, for environments that combine them as the Python kit does.
 
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
@@ -34,7 +34,7 @@ impl Parts {
         self.memory.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Does something with the environment.
+    /// Calls a function with the environment.
     fn with<R>(&self, work: impl FnOnce(&mut babybench::Env, &mut Memory) -> PyResult<R>) -> PyResult<R> {
         let mut guard = self.env.get().guard()?;
         work(&mut guard.open()?.env, &mut self.memory())
@@ -137,7 +137,7 @@ impl Parts {
         })
     }
 
-    /// Returns the geoms that each palm has touched beyond the first ones.
+    /// Returns the geoms that each palm has touched, after the first ones.
     fn touches(&self, right: usize, left: usize) -> PyResult<Option<(Vec<usize>, Vec<usize>)>> {
         self.with(|env, _| {
             let beyond = |geoms: &[usize], known: usize| geoms.get(known..).unwrap_or_default().to_vec();
@@ -173,7 +173,7 @@ impl Parts {
         self.with(|env, _| env.senses().touch_observed().map(|touch| sparse(py, touch)).transpose())
     }
 
-    /// Returns which equality constraints hold after a reset.
+    /// Returns which equality constraints are active after a reset.
     #[getter]
     fn eq_active0<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<u8>>> {
         let params = |env: &mut babybench::Env| env.blueprint().params().eq_active.clone();
@@ -186,7 +186,7 @@ impl Parts {
         self.with(|env, _| Ok(PyArray1::from_iter(py, env.state().efc_rows().map(|row| row.force))))
     }
 
-    /// Writes what is known of the state into arrays of the same lengths, in the order of `FILLED`.
+    /// Writes the state into arrays of the same lengths, in the order of `FILLED`.
     fn fill(&self, mut arrays: Vec<PyReadwriteArrayDyn<'_, f64>>) -> PyResult<()> {
         self.with(|env, _| fill(env.state(), &mut arrays))
     }
@@ -208,7 +208,7 @@ impl Parts {
         })
     }
 
-    /// Writes the present positions and velocities.
+    /// Writes the current positions and velocities.
     fn fill_position(&self, mut position: [PyReadwriteArrayDyn<'_, f64>; 2]) -> PyResult<()> {
         self.with(|env, _| {
             let [qpos, qvel] = &mut position;

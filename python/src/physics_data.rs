@@ -76,7 +76,7 @@ impl PhysicsData {
         let mut guard = self.guard()?;
         if guard.version != now.version {
             guard.engine = now.soft.engine();
-            // what never moves is placed once for a state, and may be elsewhere now
+            // elements that never move are placed once for a state, and may have new poses
             let mut state = guard.engine.new_state();
             state.copy_dynamic_from(&guard.state);
             guard.state = state;
@@ -142,7 +142,7 @@ impl PhysicsData {
         self.memory.bind(py).clone()
     }
 
-    /// Returns which equality constraints hold.
+    /// Returns which equality constraints are active.
     #[getter]
     fn eq_active<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<u8>> {
         self.active.bind(py).clone()
@@ -205,7 +205,7 @@ impl PhysicsData {
         Ok(())
     }
 
-    /// Returns the first geom that a ray meets where the arrays show geoms, and the distance; `hidden` geoms are left out, and those of
+    /// Returns the first geom that a ray meets at the poses in the arrays, and the distance; `hidden` geoms are left out, and those of
     /// one body.
     fn ray(
         &self,
@@ -241,7 +241,7 @@ impl PhysicsData {
         Ok(hit.map(|hit| (hit.geom, hit.distance)))
     }
 
-    /// Returns the distance of two geoms at the positions in the arrays, if it is below `most`, and the points between which it is
+    /// Returns the distance between two geoms at the positions in the arrays, if it is below `most`, and the points between which it is
     /// measured, m.
     fn distance(&self, py: Python<'_>, geoms: [usize; 2], most: f64) -> PyResult<Option<Span>> {
         let now = self.model.get().now(py)?;
@@ -268,8 +268,8 @@ impl PhysicsData {
         Ok(span.map(|span| (span.dist, span.from, span.to)))
     }
 
-    /// Computes everything without advancing, and shows some groups of arrays. Without constraints among them, contacts and their
-    /// forces stay those of before; without accelerations, the solver's start does.
+    /// Computes everything without advancing, and updates some groups of arrays. Without constraints among them, contacts and their
+    /// forces do not change; without accelerations, the solver's start does not.
     fn forward(&self, py: Python<'_>, groups: u32) -> PyResult<()> {
         let (guard, post) = self.with(py, |inner| {
             let Inner {
@@ -297,7 +297,7 @@ impl PhysicsData {
         self.show(py, state.unwrap_or(&guard.state), groups)
     }
 
-    /// Computes what follows from accelerations and the forces of constraints at the velocities of now.
+    /// Computes what follows from accelerations and the forces of constraints at the current velocities.
     fn rne_post_constraint(&self, py: Python<'_>) -> PyResult<()> {
         let (guard, ()) = self.with(py, |inner| {
             inner.engine.check_shape(&inner.state)?;
@@ -343,14 +343,14 @@ impl PhysicsData {
         state::contacts(py, &self.guard()?.state)
     }
 
-    /// Returns the number of contacts and of rows of constraints.
+    /// Returns the number of contacts and of constraint rows.
     #[getter]
     fn counts(&self) -> PyResult<(usize, usize)> {
         let guard = self.guard()?;
         Ok((guard.state.contact.len(), guard.state.nefc()))
     }
 
-    /// Returns the rows of constraints as arrays, one entry for each.
+    /// Returns the constraint rows as arrays, one entry for each.
     fn rows<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let guard = self.guard()?;
         let (rows, dict) = (guard.state.efc_rows().collect::<Vec<_>>(), PyDict::new(py));
@@ -366,7 +366,7 @@ impl PhysicsData {
         Ok(dict)
     }
 
-    /// Returns the places of the vertices of flexes, and the lengths and rates of their edges.
+    /// Returns the positions of the vertices of flexes, and the lengths of their edges with the rates of these.
     fn flexes<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let (guard, dict) = (self.guard()?, PyDict::new(py));
         dict.set_item("flexvert_xpos", guard.state.flexvert_xpos[..].to_array(py)?)?;
@@ -381,7 +381,7 @@ impl PhysicsData {
         Ok(dict)
     }
 
-    /// Returns the Jacobian of the constraints in full, (nefc, nv).
+    /// Returns the Jacobian of the constraints as a full matrix, (nefc, nv).
     fn jacobian<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let guard = self.guard()?;
         let (count, nv) = (guard.state.nefc(), guard.model.nv);
@@ -389,7 +389,7 @@ impl PhysicsData {
         shaped(py, &rows.collect::<Vec<_>>(), &[count, nv])
     }
 
-    /// Returns the rates of the lengths of tendons by velocities in full, (ntendon, nv).
+    /// Returns the Jacobian of tendon lengths as a full matrix, (ntendon, nv).
     fn tendon_jacobian<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let guard = self.guard()?;
         let (model, topology) = (&guard.model, Topology::new(&guard.model));
@@ -403,7 +403,7 @@ impl PhysicsData {
         shaped(py, &full, &[model.ntendon(), model.nv])
     }
 
-    /// Returns the joint-space inertia matrix in full, (nv, nv).
+    /// Returns the joint-space inertia as a full matrix, (nv, nv).
     fn inertia<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let guard = self.guard()?;
         let nv = guard.model.nv;
@@ -453,7 +453,7 @@ impl PhysicsRenderer {
     }
 
     /// Draws what the arrays of a state show, from a camera or from a free one (point, distance, azimuth, elevation): colours
-    /// (height, width, 3), distances or ids of geoms (height, width). Markers come behind the geoms of the model.
+    /// (height, width, 3), distances or ids of geoms (height, width). The ids of markers follow those of the model's geoms.
     fn draw<'py>(
         &self,
         py: Python<'py>,
@@ -512,7 +512,7 @@ impl PhysicsRenderer {
             subtree_com: vectors("subtree_com"),
             flexvert_xpos: &state.flexvert_xpos,
         };
-        // waiting for another thread here, with Python's lock held, could last for ever
+        // waiting for another thread here, with Python's lock held, could block forever
         let mut guard_of_renderer = self.renderer.try_lock().map_err(|_| {
             PyRuntimeError::new_err("another thread is using the renderer: give each thread one of its own")
         })?;

@@ -11,7 +11,7 @@ pub trait Flat {
     /// Returns them all.
     fn flat(&self) -> &[f64];
 
-    /// Returns them all, to be written.
+    /// Returns them all for writing.
     fn flat_mut(&mut self) -> &mut [f64];
 }
 
@@ -82,7 +82,7 @@ macro_rules! fields {
             })+)*
         }
 
-        /// Goes through the fields, to write them.
+        /// Goes through the fields to write them.
         pub fn $visit_mut(of: &mut $of, mut work: impl FnMut(Field<&mut [f64]>)) {
             $($({
                 let field = &mut of.$($path).+;
@@ -121,7 +121,7 @@ const ACCELERATION: u32 = 1 << 9;
 pub const POST: u32 = 1 << 10;
 /// Values of sensors.
 const SENSORS: u32 = 1 << 11;
-/// Contacts and rows of constraints, which are not fields.
+/// Contacts and constraint rows, which are not fields.
 pub const CONSTRAINTS: u32 = 1 << 12;
 /// Fields that all steps compute.
 pub const COMPUTED: u32 = (CONSTRAINTS << 1) - 1 - INPUT - POST;

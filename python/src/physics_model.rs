@@ -51,7 +51,7 @@ table! { ARRAYS, array, Arrays,
 struct Current {
     soft: SoftModel,
     model: Arc<Model>,
-    /// The numbers that the model was last made of.
+    /// The numbers that the model was last made from.
     seen: Vec<f64>,
     columns_seen: Contents,
     version: u64,
@@ -336,7 +336,7 @@ impl PhysicsModel {
         Ok(names)
     }
 
-    /// Returns sizes, options, statistics and visual settings that no array has.
+    /// Returns sizes, options, statistics and visual settings that are in no array.
     fn settings<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         settings(py, &self.current().model.clone())
     }
@@ -349,8 +349,8 @@ impl PhysicsModel {
         Ok(())
     }
 
-    /// Returns, as MuJoCo's arrays, what the engine keeps in another form: equalities, lights, materials, tendons, keyframes, data for
-    /// programs.
+    /// Returns as MuJoCo's arrays the values that the engine stores in another form: equalities, lights, materials, tendons, keyframes,
+    /// data for programs.
     fn extras<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let m = self.current().model.clone();
         let all = extras(py, &m)?;
@@ -390,7 +390,7 @@ impl PhysicsModel {
     }
 }
 
-/// Returns how many numbers a pattern has, the six sides of a cube one below another; `None` for an image, which says so itself.
+/// Returns how many numbers a pattern has, the six sides of a cube one below another; `None` for an image, whose file has its size.
 fn pattern_numbers(texture: &Texture) -> Option<usize> {
     let sides = if texture.kind == TextureType::Flat2d { 1 } else { 6 };
     let image = texture.file.is_some() || texture.cube_files.iter().any(Option::is_some);
@@ -416,7 +416,7 @@ fn wrap(wrap: &Wrap) -> (i32, i32) {
 /// Returns the parameters of a model, with equalities as a program has switched them.
 pub fn params(model: &Model, active: &[u8]) -> Params {
     let mut params = Params::new(model);
-    // MuJoCo weighs centres of mass by the masses of now, not by those of the document
+    // MuJoCo weighs centres of mass by the current masses, not by those of the document
     params.body_subtreemass.clone_from(&params.body_mass);
     for body in (1..model.nbody()).rev() {
         params.body_subtreemass[model.body_parentid[body]] += params.body_subtreemass[body];

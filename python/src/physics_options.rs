@@ -49,7 +49,7 @@ fn islands(flags: &Flags) -> usize {
     usize::from(flags.island) << 5
 }
 
-/// Returns sizes, options, statistics and visual settings that no array has.
+/// Returns sizes, options, statistics and visual settings that are in no array.
 pub fn settings<'py>(py: Python<'py>, m: &Model) -> PyResult<Bound<'py, PyDict>> {
     let settings = model::options(py, m)?;
     for (name, size) in [

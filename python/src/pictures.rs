@@ -18,7 +18,7 @@ pub struct Painters {
     renderer: Option<Renderer>,
 }
 
-/// A camera as Python names it.
+/// A camera, as given from Python.
 #[derive(FromPyObject)]
 pub enum Camera {
     /// One of the scene.
@@ -41,7 +41,7 @@ impl Camera {
     }
 }
 
-/// Draws a picture as people see it, (height, width, 3).
+/// Draws a picture in colour, (height, width, 3).
 pub fn colour<'py>(
     py: Python<'py>,
     inner: &mut Inner,

@@ -1,4 +1,4 @@
-//! Records: what is measured from them, and whether they are repeated with the same bits.
+//! Records: their measures, and whether they repeat with the same bits.
 
 use std::path::PathBuf;
 use std::sync::{Mutex, PoisonError};

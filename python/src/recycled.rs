@@ -21,7 +21,7 @@ pub struct Recycled<T> {
     pieces: Vec<Py<PyArray1<T>>>,
     /// Reference count of a piece without other references.
     idle: usize,
-    /// The piece that is given up next, if all are held.
+    /// The piece that is dropped next, if all are held.
     next: usize,
 }
 

@@ -14,9 +14,9 @@ pub struct Arrays {
     pub rows: usize,
     /// Observations by key, as Python sees them.
     pub dict: Py<PyDict>,
-    /// Images by key, if they are drawn for those who ask.
+    /// Images by key, if they are drawn on request.
     images: Py<PyDict>,
-    /// Whether they are.
+    /// Whether images are drawn on request.
     lazy: bool,
     /// The arrays of the entries, in the order of [`ObservationEntry::ALL`]; `None` for missing ones.
     entries: Vec<Option<AnySlab>>,
@@ -102,7 +102,7 @@ impl Arrays {
         Ok(dict)
     }
 
-    /// Lends all arrays to work that fills them.
+    /// Lends all arrays to a function that fills them.
     pub fn fill<R>(&mut self, py: Python<'_>, work: impl FnOnce(Buffers<'_>) -> PyResult<R>) -> PyResult<R> {
         let slabs = self.entries.iter();
         let mut lent: Vec<Option<Lent<'_>>> = slabs.map(|slab| Some(slab.as_ref()?.lend(py))).collect();

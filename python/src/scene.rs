@@ -1,4 +1,4 @@
-//! Scenes as documents, and what the model of a scene keeps in another form than MuJoCo.
+//! Scenes as documents, and the parts of a scene's model that are stored in another form than in MuJoCo.
 
 use std::path::PathBuf;
 

@@ -70,7 +70,7 @@ macro_rules! slabs {
                 })
             }
 
-            /// Returns what Python sees.
+            /// Returns Python's array.
             pub fn view(&self) -> &Py<PyAny> {
                 match self {
                     $(Self::$kind(slab) => &slab.view,)*

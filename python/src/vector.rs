@@ -272,7 +272,7 @@ impl VectorEnv {
         Ok(self.guard()?.closed())
     }
 
-    // --- what came of it ---
+    // --- results ---
 
     #[getter]
     fn flags<'py>(&self, py: Python<'py>) -> PyResult<[Bound<'py, PyAny>; 3]> {

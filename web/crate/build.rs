@@ -1,6 +1,6 @@
-//! Bounds the memory of the module, so that larger requests fail with an error and do not crash the browser.
+//! Bounds the memory of the module, so that larger requests fail with an error instead of crashing the browser.
 
-/// Most memory that the module may take, bytes. Scenes need 20 to 60 MB; many environments more.
+/// Largest memory that the module may take, bytes. Scenes need 20 to 60 MB; many environments more.
 const MAX_MEMORY: u32 = 1 << 30;
 
 fn main() {

@@ -30,7 +30,7 @@ const init = once(async (source) => {
 export default init;
 
 /**
- * Lists the keys of a configuration: names, sections, what is allowed, defaults, meanings.
+ * Lists the keys of a configuration: names, sections, allowed values, defaults, meanings.
  * @returns {ConfigKey[]}
  */
 export const configKeys = () => (memory(), guarded(coreKeys));

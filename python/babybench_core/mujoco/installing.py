@@ -17,7 +17,7 @@ _ENVIRONMENTS = "gymnasium.envs.mujoco.mujoco_env"
 
 
 def _beside_this_package() -> None:
-    """Imports :mod:`babybench.mujoco` where ``babybench`` is another package, for example in scripts in the starter kit's folder."""
+    """Imports :mod:`babybench.mujoco` where ``babybench`` is another package, as for scripts in the starter kit's folder."""
     folder = Path(__file__).parents[2].joinpath(*_OWN.split("."))
     spec = spec_from_file_location(_OWN, folder / "__init__.py", submodule_search_locations=[str(folder)])
     assert spec is not None

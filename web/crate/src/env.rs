@@ -370,14 +370,14 @@ impl Core {
         place.map_err(|e| js::env_error(&e))
     }
 
-    /// Returns width and height of what the left eye sees, and of what the right one sees, pixels.
+    /// Returns width and height of the left eye's pictures, and of the right one's, pixels.
     #[wasm_bindgen(js_name = eyeSizes)]
     pub fn eye_sizes(&self) -> Vec<u32> {
         let sizes = self.env.config().eye_sizes();
         sizes.into_iter().flatten().map(|pixels| pixels as u32).collect()
     }
 
-    /// Returns how many steps pass until the observation has what the eyes see.
+    /// Returns the delay of vision, in steps.
     #[wasm_bindgen(js_name = visionDelay)]
     pub fn vision_delay(&self) -> u32 {
         self.env.blueprint().sense_delay(Sense::EyeLeft) as u32

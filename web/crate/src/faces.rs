@@ -11,7 +11,7 @@ use wasm_bindgen::prelude::*;
 use crate::js;
 
 thread_local! {
-    /// The pictures that were brought.
+    /// The pictures that were added.
     static BROUGHT: RefCell<MemoryAssets> = RefCell::default();
 }
 
@@ -19,7 +19,7 @@ fn path_of(face: FacialExpression) -> String {
     format!("tex/face_{face}.png")
 }
 
-/// Keeps the picture of a face, a PNG file, for every scene that is looked at from now on.
+/// Keeps the picture of a face, a PNG file, for every scene that is drawn from now on.
 #[wasm_bindgen(js_name = bringFace)]
 pub fn bring_face(name: &str, picture: Vec<u8>) -> Result<(), JsValue> {
     let face = FacialExpression::from_name(name).ok_or_else(|| js::error("there is no such face"))?;

@@ -24,12 +24,12 @@ pub struct Frame {
 }
 
 impl Frame {
-    /// Copies the poses at the start of the last physics step, and what was felt there.
+    /// Copies the poses at the start of the last physics step, and the touch then.
     pub fn update(&mut self, model: &Model, scenery: &Scenery, s: &State, touch: Option<&Touch>) {
         self.poses.clear();
         let placed = Poses::from(s);
         for d in &scenery.drawables {
-            // a piece of a tendon that is not there has no extent
+            // a piece of a tendon that does not exist has no extent
             let Some((now, pos, mat)) = d.placed(&placed) else {
                 self.poses.extend([0.0; 12]);
                 continue;

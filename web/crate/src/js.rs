@@ -34,17 +34,17 @@ pub fn ids(ids: &[usize]) -> JsValue {
     list(ids.iter().map(|&i| id(i)))
 }
 
-/// Makes `null` of nothing.
+/// Makes `null` of `None`.
 pub fn optional<T>(value: Option<T>, make: impl FnOnce(T) -> JsValue) -> JsValue {
     value.map_or(JsValue::NULL, make)
 }
 
-/// Sets a property of an object of our own, which cannot fail.
+/// Sets a property of an object that was made here, which cannot fail.
 fn set(object: &Object, key: &str, value: &JsValue) {
     let _ = Reflect::set(object, &key.into(), value);
 }
 
-/// Makes an `Error` with the text of ours.
+/// Makes an `Error` with the text of a library error.
 pub fn error(error: impl std::fmt::Display) -> JsValue {
     js_sys::Error::new(&error.to_string()).into()
 }
@@ -57,7 +57,7 @@ pub fn env_error(e: &EnvError) -> JsValue {
     }
 }
 
-/// Makes an `Error` with the key and the place that are at fault.
+/// Makes an `Error` with the key and the place of the fault.
 pub fn config_error(e: &ConfigError) -> JsValue {
     let error = js_sys::Error::new(&e.to_string());
     error.set_name("ConfigError");

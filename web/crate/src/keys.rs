@@ -31,7 +31,7 @@ fn describe(key: &Key) -> JsValue {
             ("number", JsValue::NULL, min.into(), max.into())
         }
         KeyKind::Choice(names) => ("choice", list(names.iter().copied()), JsValue::NULL, JsValue::NULL),
-        // a path is offered by who hands over its file
+        // paths are offered by the program that passes the files
         KeyKind::ChoiceOrFile { names, .. } => ("choice", list(names.iter().copied()), JsValue::NULL, JsValue::NULL),
         KeyKind::List(names) | KeyKind::NoneOrList(names) => {
             ("list", list(names.iter().copied()), JsValue::NULL, JsValue::NULL)

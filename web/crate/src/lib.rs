@@ -20,7 +20,7 @@ use faces::Faces;
 use js_sys::Uint8Array;
 use wasm_bindgen::prelude::*;
 
-/// Lists the configuration keys: name, section, kind, what is allowed, default, meaning.
+/// Lists the configuration keys: name, section, kind, allowed values, default, meaning.
 #[wasm_bindgen(js_name = configKeys)]
 pub fn config_keys() -> JsValue {
     keys::keys()

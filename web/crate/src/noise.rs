@@ -1,11 +1,11 @@
-//! Movements without a purpose.
+//! Random movements.
 
 use babybench::spaces::{BoxSpace, Noise};
 use wasm_bindgen::prelude::*;
 
 use crate::js;
 
-/// A noise over an action space.
+/// Action noise for an action space.
 #[wasm_bindgen]
 pub struct ActionNoise {
     noise: babybench::spaces::ActionNoise,
@@ -14,7 +14,7 @@ pub struct ActionNoise {
 
 #[wasm_bindgen]
 impl ActionNoise {
-    /// Makes a noise of its name, for actions between `low` and `high` that are `step` seconds apart.
+    /// Makes a noise by name, for actions between `low` and `high`, `step` seconds apart.
     #[wasm_bindgen(constructor)]
     pub fn new(noise: &str, low: Vec<f32>, high: Vec<f32>, step: f64, seed: u64) -> Result<ActionNoise, JsValue> {
         let noise: Noise = noise.parse().map_err(js::error)?;
