@@ -185,7 +185,7 @@ impl Actuation for MuscleModel {
             let reflex = self.params[k].activities(angle, velocity, command);
             for (at, reflex) in [k, n + k].into_iter().zip(reflex) {
                 let own = f64::from(self.space.clip(at, action[at])) + reflex;
-                // where the action is suppressed, the excitation that reaches the activation at once
+                // where the action is suppressed, the excitation that gives the required activation at once
                 let exact = state.act[at] + gain * (reflex - state.act[at]);
                 let target = own * (1.0 - command.suppress) + exact * command.suppress;
                 state.actuator_target[at] = target.clamp(0.0, 1.0);
