@@ -34,13 +34,12 @@ licences() {
   python3 scripts/toys.py --check
 }
 
-# What users build: nothing but the environments, all features, each feature without those that it does not need, and the engine alone. The
-# default features are those of the command line in the wheel, and `eval` alone is compiled without optimisation: both are left out here.
+# What users build: nothing but the environments, each feature without those that it does not need, and the engine alone. The default features
+# are those of the command line in the wheel, `eval` alone is compiled for a test, and all features are those of clippy: they are left out here.
 # Beside `shared-features` dependencies are those of the lints.
 features() {
   local features
   check -p babybench --no-default-features --lib --examples
-  check -p babybench -p learner --all-features --lib --bins --examples
   for features in rapier,npz,parallel,wgpu onnx; do
     check -p babybench --no-default-features --features "babybench/${features//,/,babybench/}" --lib
   done

@@ -21,12 +21,13 @@ done
 
 # Programs for other processors hold their C library.
 build() { # NAME TARGET FLAGS PROFILE: prints the path of a program or module, target/same-bits/NAME
-  local name=$1 for=$2 flags=$3 profile=$4 rustc made variable=${2//-/_} example=checksum
+  local name=$1 for=$2 flags=$3 profile=$4 rustc made variable=${2//-/_}
   made=$target/$for/${profile/dev/debug}/examples/checksum
-  if [ "$for" = "$wasm" ]; then example=checksum_wasm made=${made}_wasm.wasm; fi
+  local what=(-p babybench --features parallel --example checksum)
+  if [ "$for" = "$wasm" ]; then what=(-p checksum-wasm) made=$target/$for/${profile/dev/debug}/checksum_wasm.wasm; fi
   rustc=$(scripts/toolchain.sh "$target/toolchain" "$for")
   env RUSTC="$rustc" "CARGO_TARGET_${variable^^}_RUSTFLAGS=$flags" "CARGO_TARGET_${variable^^}_LINKER=$(linker "$for")" \
-    cargo build --quiet --locked --features parallel --example "$example" --profile "$profile" --target "$for" --target-dir "$target" >&2
+    cargo build --quiet --locked "${what[@]}" --profile "$profile" --target "$for" --target-dir "$target" >&2
   mkdir -p "$target/same-bits"
   cp "$made" "$target/same-bits/$name"
   echo "$target/same-bits/$name"

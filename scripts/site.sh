@@ -25,11 +25,12 @@ if ! [ -d "$tools/node_modules" ] || [ "$tools/package-lock.json" -nt "$tools/no
   touch "$tools/node_modules"
 fi
 
-book() {
+book() { # [quick]: without colours in programs, which take half of the time
   local version commit
   version=$(sed -n 's/^version = "\(.*\)"/\1/p' Cargo.toml | head -1)
   commit=$(git rev-parse --short HEAD 2>/dev/null || true)
   export SITE_VERSION="$version${commit:+ ($commit)}" SITE_SOURCE=$sources SITE_OUT=$out
+  if [ "${1:-}" = quick ]; then export SITE_QUICK=yes; fi
   node "$tools/assemble.mjs" "$sources"
   ln -sfn "$root/$tools/node_modules" "$(dirname "$sources")/node_modules" # where pages find Vue
   rm -rf "$out"
@@ -59,7 +60,7 @@ javascript_reference() {
   "$tools/node_modules/.bin/typedoc" --options "$tools/typedoc.json" --out "$out/reference/npm"
 }
 
-book
+book "${1:-}"
 if [ "${1:-}" != quick ]; then
   rust_reference
   python_reference

@@ -26,8 +26,6 @@ wasm=wasm32-unknown-unknown
 package=web/dist/babybench
 if ! [ -d web/node_modules ]; then npm ci --prefix web --ignore-scripts --no-audit --no-fund; fi
 
-cargo build --locked --profile testing -p babybench-bindgen
-
 # The modules: 128-bit vector instructions are in every browser since 2023 and in node since 16.
 # One after the other: together, each would have the features of both. In that of the environments kernels are inlined because they say so;
 # of the rest only what is small. Loops whose length the compiler does not know are not unrolled, nor long ones that it does know, and messages
@@ -42,6 +40,7 @@ module() { # PACKAGE FLAGS
 module babybench-web "$simd $small"
 module babybench-onnx "$simd"
 
+cargo build --locked --profile testing -p babybench-bindgen # last, as other builds in this folder may keep it waiting
 rm -rf "$package"
 mkdir -p "$package"
 bind() { # MODULE NAME: JavaScript beside a module

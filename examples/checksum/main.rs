@@ -9,8 +9,8 @@
 //! cargo run --release --example checksum snapshot      # snapshots, their bytes and what follows them
 //! cargo run --release --example checksum keep FOLDER   # writes these snapshots
 //! cargo run --release --example checksum restore FOLDER # prints what `snapshot` prints, from snapshots that another target may have written
-//! cargo build --release --example checksum_wasm --target wasm32-unknown-unknown
-//! node examples/checksum/run.mjs target/wasm32-unknown-unknown/release/examples/checksum_wasm.wasm   # or: ... KIND, keep or restore
+//! cargo build --release -p checksum-wasm --target wasm32-unknown-unknown   # with --features rapier: the other engine, too
+//! node examples/checksum/run.mjs target/wasm32-unknown-unknown/release/checksum_wasm.wasm   # or: ... KIND, keep or restore
 //! ```
 
 use std::path::Path;

@@ -1,4 +1,5 @@
 //! A WebAssembly module without imports: `run.mjs` requests a line, or writes a snapshot into its memory, and reads the result.
+#![cfg(target_arch = "wasm32")]
 
 use std::sync::{Mutex, MutexGuard, PoisonError};
 

@@ -91,7 +91,7 @@ fn passive_motion_stays_within_ten_nanoradians() {
         let plan = Plan {
             motion: Motion::Passive,
             steps,
-            rollouts: 4,
+            rollouts: 2,
             floors: 1,
         };
         let paths = paths(api, &case, plan).expect("MuJoCo loads our scenes");

@@ -1,7 +1,11 @@
 // The site: https://vitepress.dev/reference/site-config. `scripts/site.sh` builds it and says where its parts are.
 import { sidebar } from "./sidebar.mjs";
 
-const { SITE_SOURCE, SITE_OUT, SITE_VERSION = "", SITE_BASE = "/" } = process.env;
+const { SITE_SOURCE, SITE_OUT, SITE_VERSION = "", SITE_BASE = "/", SITE_QUICK } = process.env;
+
+/** Settings of a build that only checks the pages: programs without colours, scripts as they are. */
+const escape = (text) => text.replace(/[&<>]/g, (c) => ({ "&": "&amp;", "<": "&lt;", ">": "&gt;" })[c]);
+const quick = { markdown: { highlight: (text) => `<pre v-pre><code>${escape(text)}</code></pre>` }, vite: { build: { minify: false } } };
 
 /** Anchors as code hosts make them, so that a link to a heading works in both places. */
 const slugify = (heading) =>
@@ -28,7 +32,9 @@ export default {
     toc: { slugify },
     image: { lazyLoading: true },
     theme: { light: "github-light-high-contrast", dark: "github-dark" },
+    ...(SITE_QUICK ? quick.markdown : {}),
   },
+  ...(SITE_QUICK ? { vite: quick.vite } : {}),
   // other parts of the site, which VitePress does not build; scripts/site.sh checks these links
   ignoreDeadLinks: [/^\/(reference|live|files)\//],
   themeConfig: {
