@@ -27,7 +27,7 @@ pub(crate) use table;
 table! { ARRAYS, array, Arrays,
     body_parentid body_rootid body_weldid body_jntadr body_jntnum body_dofadr body_dofnum body_geomadr body_geomnum
     body_pos body_quat body_ipos body_iquat body_mass body_subtreemass body_inertia body_invweight0
-    jnt_type jnt_bodyid jnt_qposadr jnt_dofadr jnt_pos jnt_axis jnt_limited jnt_range jnt_margin jnt_stiffness
+    jnt_type jnt_bodyid jnt_qposadr jnt_dofadr jnt_pos jnt_axis jnt_limited jnt_range jnt_margin jnt_stiffness jnt_actfrcrange
     jnt_solref jnt_solimp jnt_group
     dof_bodyid dof_jntid dof_parentid dof_armature dof_damping dof_frictionloss dof_invweight0 dof_m0 dof_solref
     dof_solimp
@@ -39,7 +39,8 @@ table! { ARRAYS, array, Arrays,
     pair_geom pair_dim pair_solref pair_solreffriction pair_solimp pair_friction pair_margin pair_gap
     exclude
     eq_active0 eq_solref eq_solimp
-    tendon_limited tendon_range tendon_margin tendon_solref_lim tendon_solimp_lim tendon_invweight0
+    tendon_limited tendon_range tendon_margin tendon_solref_lim tendon_solimp_lim tendon_invweight0 tendon_stiffness tendon_damping
+    tendon_frictionloss tendon_lengthspring tendon_solref_fri tendon_solimp_fri
     actuator_trnid actuator_refid actuator_gear actuator_ctrllimited actuator_ctrlrange actuator_forcelimited actuator_forcerange
     actuator_lengthrange actuator_dyntype actuator_dynprm actuator_actadr actuator_actlimited actuator_actrange actuator_actearly
     actuator_gaintype actuator_gainprm actuator_biastype actuator_biasprm actuator_user

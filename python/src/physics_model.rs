@@ -262,7 +262,12 @@ impl PhysicsModel {
     fn from_file(py: Python<'_>, path: PathBuf) -> PyResult<Self> {
         let (assets, name) =
             FileSystem::beside(&path).map_err(|e| PyValueError::new_err(format!("{}: {e}", path.display())))?;
-        let model = detached(py, || load(&assets, &name).and_then(compile))?;
+        let compiled = || {
+            load(&assets, &name)
+                .and_then(compile)
+                .map_err(|error| error.in_folder(assets.folder()))
+        };
+        let model = detached(py, compiled)?;
         Self::made(py, model, Arc::new(assets))
     }
 

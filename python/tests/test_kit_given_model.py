@@ -118,8 +118,8 @@ def test_what_cannot_be_taken_over_is_refused() -> None:
     with pytest.raises(ValueError, match="the state has nq 7"):
         env.data = mujoco.MjData(other)
     fixed = mujoco.MjModel.from_xml_path(env.fullpath)
-    fixed.jnt_margin[0] = 7
-    with pytest.raises((AttributeError, ValueError), match="jnt_margin"):
+    fixed.site_size[0] = 7
+    with pytest.raises((AttributeError, ValueError), match="site_size"):
         env.model = fixed
     assert env.model.ngeom == fixed.ngeom
     run(env)
@@ -142,8 +142,8 @@ def test_what_cannot_be_taken_over_is_refused() -> None:
     class Fixed(MIMoDummyEnv):
         def _initialize_simulation(self) -> Any:
             model = mujoco.MjModel.from_xml_path(self.fullpath)
-            model.jnt_margin[0] = 7
+            model.site_size[0] = 7
             return model, mujoco.MjData(model)
 
-    with pytest.raises((AttributeError, ValueError), match="jnt_margin"):
+    with pytest.raises((AttributeError, ValueError), match="site_size"):
         Fixed(**PLAIN)

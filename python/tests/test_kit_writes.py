@@ -14,7 +14,7 @@ import mujoco
 
 pytestmark = pytest.mark.skipif(not getattr(mujoco, "stands_in", False), reason="MuJoCo's own arrays say less")
 
-FIXED = ("body_ipos", "body_iquat", "jnt_axis", "jnt_pos", "geom_contype", "qpos0", "site_size", "actuator_gainprm")
+FIXED = ("body_ipos", "body_iquat", "geom_contype", "geom_condim", "site_size")
 SCENE = """<mujoco>
   <option gravity="0 0 0" timestep="0.005" iterations="50" tolerance="1e-10" cone="elliptic" jacobian="dense"/>
   <compiler angle="degree" inertiafromgeom="true"/>
@@ -25,6 +25,35 @@ SCENE = """<mujoco>
     <body name="hand" mocap="true" pos="3 0 1"><geom size=".02"/></body>
   </worldbody>
 </mujoco>"""
+LEVER = SCENE.replace(
+    "  </worldbody>\n",
+    """    <body name="lever" pos="0 3 1">
+      <joint name="lever" type="slide" range="-.1 .1" limited="true" springref=".1" stiffness="3"/><geom size=".05" mass="1"/></body>
+  </worldbody>
+  <tendon><fixed name="string" range="-.2 .2" limited="true" stiffness="5" springlength="0 .1" frictionloss=".1">
+    <joint joint="lever" coef="1"/></fixed></tendon>
+  <actuator><general name="servo" joint="lever" gainprm="10" biastype="affine" biasprm="0 -10 -1" dyntype="filter" dynprm=".1"
+    forcerange="-5 5" forcelimited="true"/></actuator>
+""",
+)
+LAWS: dict[str, float] = {
+    "qpos0": 0.05,
+    "qpos_spring": -0.2,
+    "jnt_margin": 0.3,
+    "jnt_pos": 0.1,
+    "jnt_axis": 0.7,
+    "tendon_range": 0.01,
+    "tendon_margin": 0.3,
+    "tendon_stiffness": 50.0,
+    "tendon_damping": 4.0,
+    "tendon_frictionloss": 2.0,
+    "tendon_lengthspring": 0.05,
+    "actuator_forcerange": 0.5,
+    "actuator_dynprm": 0.5,
+    "actuator_gainprm": 90.0,
+    "actuator_biasprm": -1.0,
+}
+"""Arrays, and what is written into a number of their last row."""
 
 
 @pytest.fixture
@@ -44,6 +73,64 @@ def test_writing_to_a_fixed_array_names_it(env: Any, name: str) -> None:
     with pytest.raises(AttributeError, match=name):
         setattr(env.model, name, before)
     assert np.array_equal(getattr(env.model, name), before)
+
+
+def _law(model: Any, name: str, value: float) -> None:
+    array = getattr(model, name)
+    if name in ("qpos0", "qpos_spring"):
+        array[model.joint("lever").qposadr[0]] = value
+    elif name.startswith("jnt_"):
+        array[model.joint("robot:left_elbow" if name in ("jnt_axis", "jnt_pos") else "lever").id, ...] = value
+    elif array.ndim == 1:
+        array[-1] = value
+    else:
+        array[-1, 1 if name in ("tendon_range", "tendon_lengthspring") else 0] = value
+
+
+@pytest.mark.parametrize("name", LAWS)
+def test_laws_that_are_written_act(tmp_path: Path, name: str) -> None:
+    path = tmp_path / "lever.xml"
+    path.write_text(LEVER.format(folder=SCENE_DIRECTORY))
+    env = MIMoDummyEnv(path, frame_skip=20, touch_params=None, vision_params=None)
+    env.reset(seed=0)
+    model, data = env.model, env.data
+    plain = mujoco.MjModel.from_xml_path(env.fullpath)
+    copy, unchanged = mujoco.MjData(plain), mujoco.MjData(mujoco.MjModel.from_xml_path(env.fullpath))
+    _law(model, name, LAWS[name])
+    _law(plain, name, LAWS[name])
+    # the environment sets what its actuation model needs: the same in all three
+    for own in (plain, unchanged.model):
+        for kept in ("jnt_stiffness", "dof_damping", "actuator_gear", "actuator_forcelimited"):
+            getattr(own, kept)[...] = getattr(model, kept)
+    start = np.array(data.qpos)
+    lever = model.joint("lever").qposadr[0]
+    for one in (data, copy, unchanged):
+        one.qpos[:] = start
+        one.qpos[lever] = 0.15
+        one.qvel[:] = 0
+        one.act[:] = 0
+        one.ctrl[:] = 0
+        one.ctrl[model.actuator("servo").id] = 0.7
+    for _ in range(10):
+        mujoco.mj_step(model, data)
+        mujoco.mj_step(plain, copy)
+        mujoco.mj_step(unchanged.model, unchanged)
+    np.testing.assert_allclose(data.qpos, copy.qpos, rtol=0, atol=1e-10)
+    np.testing.assert_allclose(data.qvel, copy.qvel, rtol=0, atol=1e-8)
+    np.testing.assert_allclose(data.xpos, copy.xpos, rtol=0, atol=1e-10)
+    # a slide is where its position is beyond qpos0
+    seen = "xpos" if name == "qpos0" else "qpos"
+    assert np.abs(getattr(data, seen) - getattr(unchanged, seen)).max() > 1e-6
+
+
+def test_a_simulation_that_diverges_restarts_with_a_warning(env: Any) -> None:
+    toy = env.model.joint("robot:hip_lean1").dofadr[0]
+    env.data.qvel[toy] = 1e11
+    with pytest.warns(RuntimeWarning, match="diverged in step .* restarts"):
+        env.step(np.zeros(env.action_space.shape))
+    assert env.data.time == pytest.approx(env.frame_skip * env.model.opt.timestep)
+    assert np.abs(env.data.qvel).max() < 1e3
+    env.step(np.zeros(env.action_space.shape))
 
 
 def test_poses_that_are_written_act(env: Any) -> None:

@@ -94,6 +94,9 @@ changeable! {
     }
     model {
         "opt.timestep" = opt.timestep;
+        "opt.tolerance" = opt.tolerance;
+        "opt.ls_tolerance" = opt.ls_tolerance;
+        "opt.ccd_tolerance" = opt.ccd_tolerance;
         "opt.impratio" = opt.impratio;
         "opt.density" = opt.density;
         "opt.viscosity" = opt.viscosity;
@@ -101,6 +104,12 @@ changeable! {
         "body_pos" = body_pos;
         "body_quat" = body_quat;
         "jnt_range" = jnt_range;
+        "jnt_margin" = jnt_margin;
+        "jnt_pos" = jnt_pos;
+        "jnt_axis" = jnt_axis;
+        "jnt_actfrcrange" = jnt_actfrcrange;
+        "qpos0" = qpos0;
+        "qpos_spring" = qpos_spring;
         "jnt_solref" = jnt_solref;
         "jnt_solimp" = jnt_solimp;
         "dof_armature" = dof_armature;
@@ -127,5 +136,21 @@ changeable! {
         "pair_gap" = pair_gap;
         "eq_solref" = eq_solref;
         "eq_solimp" = eq_solimp;
+        "tendon_range" = tendon_range;
+        "tendon_margin" = tendon_margin;
+        "tendon_stiffness" = tendon_stiffness;
+        "tendon_damping" = tendon_damping;
+        "tendon_frictionloss" = tendon_frictionloss;
+        "tendon_lengthspring" = tendon_lengthspring;
+        "tendon_solref_lim" = tendon_solref_lim;
+        "tendon_solimp_lim" = tendon_solimp_lim;
+        "tendon_solref_fri" = tendon_solref_fri;
+        "tendon_solimp_fri" = tendon_solimp_fri;
+        "actuator_forcerange" = actuator_forcerange;
+        "actuator_actrange" = actuator_actrange;
+        "actuator_dynprm" = actuator_dynprm;
+        "actuator_gainprm" = actuator_gainprm;
+        "actuator_biasprm" = actuator_biasprm;
+        "actuator_lengthrange" = actuator_lengthrange;
     }
 }

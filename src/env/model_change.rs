@@ -10,16 +10,30 @@ use crate::model::{Arrays, Model};
 use crate::physics::Params;
 
 /// Arrays without negative numbers.
-const AT_LEAST_ZERO: [&str; 6] = [
+const AT_LEAST_ZERO: [&str; 14] = [
+    "opt.tolerance",
+    "opt.ls_tolerance",
+    "body_mass",
+    "body_inertia",
+    "geom_size",
     "dof_armature",
     "dof_damping",
     "dof_frictionloss",
     "geom_friction",
     "pair_friction",
     "geom_rbound",
+    "tendon_damping",
+    "tendon_frictionloss",
+    "tendon_stiffness",
 ];
 /// Arrays in which positive numbers must stay positive.
-const ABOVE_ZERO: [&str; 4] = ["opt.timestep", "body_mass", "body_inertia", "geom_size"];
+const ABOVE_ZERO: [&str; 5] = [
+    "opt.timestep",
+    "opt.ccd_tolerance",
+    "body_mass",
+    "body_inertia",
+    "geom_size",
+];
 
 /// A model before and after a change.
 struct ModelChange {
@@ -135,8 +149,9 @@ impl Env {
 
 impl ModelMut<'_> {
     /// Changes numbers of the model from the next step on, in this and in later episodes: gravity and timestep, mass, inertia, size,
-    /// poses, friction, damping, stiffness, armature, gears, softness. It has the effect of writing into MuJoCo's `mjModel`: constants derived
-    /// from these numbers (`body_invweight0`, `dof_invweight0`, `geom_rbound`) keep their values unless the program writes them, too.
+    /// poses, joint axes, friction, damping, stiffness, armature, gears, the laws of actuators and tendons, softness. It has the effect of
+    /// writing into MuJoCo's `mjModel`: constants derived from these numbers (`body_invweight0`, `dof_invweight0`, `geom_rbound`) keep their
+    /// values unless the program writes them, too.
     ///
     /// A body whose mass or size a task has changed in an episode keeps the task's values until the episode ends. Snapshots of an
     /// environment fit others with the same changes only. [`MimoMut::set_age`](crate::env::MimoMut::set_age) rebuilds the model without

@@ -188,7 +188,7 @@ fn what_cannot_be_changed_is_refused_and_changes_nothing() {
         other => panic!("{other:?}"),
     };
     assert_eq!(refused(&mut env, |m| m.nq += 1), ModelChangeError::Fixed);
-    assert_eq!(refused(&mut env, |m| m.jnt_axis[1][0] += 1.0), ModelChangeError::Fixed);
+    assert_eq!(refused(&mut env, |m| m.body_ipos[1][0] += 1.0), ModelChangeError::Fixed);
     assert_eq!(refused(&mut env, |m| m.body_mass.clear()), ModelChangeError::Fixed);
     for (said, edit) in [
         (

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from typing import Any
 
 import numpy as np
@@ -106,18 +107,56 @@ def _anew(d: MjData) -> None:
 def mj_step(m: MjModel, d: MjData, nstep: int = 1) -> None:
     """Advances by time steps.
 
+    A simulation that diverges restarts at ``qpos0``, with a ``RuntimeWarning``, and the step is made from there, unless the
+    document has ``<flag autoreset="disable"/>``.
+
     Raises:
         ValueError: A number in the arrays is not finite.
-        RuntimeError: The simulation diverged; MuJoCo would warn and restart.
+        RuntimeError: The simulation diverged, and does not restart.
+    """
+    start, nstep = d.time, int(nstep)
+    try:
+        advance(m, d, nstep)
+    except RuntimeError as error:
+        if not has_diverged(error) or getattr(m.opt, "disableflags", 0) & mjtDisableBit.mjDSBL_AUTORESET:
+            raise
+        # the arrays show a step before the one that failed, from which the others are made one by one
+        done = round((d.time - start) / m.opt.timestep)
+        for _ in range(nstep - done):
+            _step_or_restart(m, d)
+
+
+def has_diverged(error: RuntimeError) -> bool:
+    """Returns whether an error of the engine is a divergence."""
+    return "diverged" in str(error)
+
+
+def _step_or_restart(m: MjModel, d: MjData) -> None:
+    try:
+        advance(m, d, 1)
+    except RuntimeError as error:
+        if not has_diverged(error):
+            raise
+        warnings.warn(f"{error} (it restarts at qpos0, as in MuJoCo)", RuntimeWarning, stacklevel=3)
+        mj_resetData(m, d)
+        advance(m, d, 1)
+
+
+def advance(m: MjModel, d: MjData, nstep: int) -> None:
+    """Advances by time steps, without a restart.
+
+    Raises:
+        ValueError: A number in the arrays is not finite.
+        RuntimeError: The simulation diverged.
     """
     check(m, d)
     _anew(d)
     if getattr(m.opt, "enableflags", 0) & mjtEnableBit.mjENBL_ENERGY:
         from .inverse import step_with_energy
 
-        step_with_energy(m, d, int(nstep))
+        step_with_energy(m, d, nstep)
     else:
-        d._own.step(int(nstep))
+        d._own.step(nstep)
 
 
 def mj_forward(m: MjModel, d: MjData) -> None:

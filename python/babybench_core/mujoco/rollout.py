@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from .data import MjData
 from .enums import mjtState
-from .functions import mj_getState, mj_setState, mj_stateSize, mj_step
+from .functions import advance, mj_getState, mj_setState, mj_stateSize
 from .model import MjModel
 
 __all__ = ["Rollout", "rollout"]
@@ -173,7 +173,7 @@ def _run(
         if applied is not None:
             mj_setState(model, data, applied[step % len(applied)], control_spec)
         try:
-            mj_step(model, data)
+            advance(model, data, 1)
         except RuntimeError:  # it diverged
             state[step:], sensors[step:] = last, seen
             return

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Callable
 from types import SimpleNamespace
 from typing import Any
@@ -10,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from babybench_core import _native
+from babybench_core.mujoco.functions import has_diverged
 
 from .course import Course, Turn
 from .live import Live, ViewLive
@@ -179,9 +181,16 @@ class Core:
             self._live.data.ctrl[:] = self.engine.state_array("ctrl")
 
     def physics_step(self) -> None:
-        """Advances by one physics step."""
+        """Advances by one physics step. A simulation that diverges restarts at ``qpos0`` with a warning, as in MuJoCo."""
         self.pull()
-        self.parts.physics_step()
+        try:
+            self.parts.physics_step()
+        except RuntimeError as error:
+            if not has_diverged(error):
+                raise
+            warnings.warn(f"{error} (it restarts at qpos0, as in MuJoCo)", RuntimeWarning, stacklevel=2)
+            self.reset_data()
+            self.parts.physics_step()
         self.changed()
 
     def read(self, name: str) -> Array:

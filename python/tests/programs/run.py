@@ -26,6 +26,8 @@ class Program:
     commit: str
     command: tuple[str, ...]
     prints: str
+    beside: tuple[str, str, str] | None = None
+    """A folder in its own in which it looks for another repository, and that one's name and commit."""
 
 
 _TACTILE = ("uchanable/tactile-lm", "b96603d6caa2fe872ccedd9375e71ea5b5df6c7c")
@@ -34,6 +36,7 @@ _MIMO = ("trieschlab/MIMo", "623c9af9f289ec62c666518b3af1384da5bb3ebb")
 _LENZ = ("miles-lenz/MIMo", "9f0f538dfa1da8b116ce96fc3c0be757ff8f6a41")
 _FEDOZZI = ("marcogfedozzi/MIMo", "a20082914e0d42abb0c638b884f57e94c19b2141")
 _DOHM = ("dohmjan/MIMo", "b72119eceefde78b3dc855bd439b236d84187467")
+_TARO = ("ooo7OneuBLT/Taro", "c714c09af20b78846a3cb717ab00b0169f56ef2e")
 _SCENE = """
 import os, gymnasium, mimoEnv, mom_mimoEnv
 path = os.path.abspath("mom_mimoEnv/assets/{scene}.xml")
@@ -68,6 +71,24 @@ PROGRAMS = (
         Program(*_MOTHER, ("-c", _SCENE.format(scene=scene)), f"bodies that follow recordings: {count}")
         for scene, count in (("mom1_scene", 34), ("mom_front_scene", 35), ("testing", 0))
     ),
+    *(
+        Program(*_TARO, (f"{script}.py",), prints, ("MIMo", *_MIMO))
+        for script, prints in (
+            ("D/scripts/two_agent_env", "na=88 nb=88"),
+            ("D/scripts/d_env", "608"),
+            ("D/scripts/d_beta_env", "OK:"),
+            ("D/scripts/d_beta_puppet", "OK:"),
+            ("D/scripts/d_c5_growth_check", "11.27"),
+            ("D/scripts/d_touch_check", "15897"),
+            ("D/scripts/d_touch_control", "5%"),
+            ("D/scripts/diag_controllability", "qpos"),
+            ("E/scripts/e_infant_neck", ""),
+            ("E/scripts/e_limb_strength", "NOTE"),
+            ("E/scripts/e_reach_space", "NOTE"),
+            ("E/scripts/e_toy_check", "verdict"),
+            ("E/scripts/e_vor", ""),
+        )
+    ),
     Program(*_MIMO, ("-c", _BENCHMARK), "ran"),
     Program(*_DOHM, ("-c", _BENCHMARK), "ran"),
     Program(
@@ -88,15 +109,26 @@ PROGRAMS = (
 )
 
 
-def fetch(program: Program, folder: Path) -> Path:
-    """Fetches the commit of a program's repository, unless it is there."""
-    target = folder / program.repository.replace("/", "+")
+def fetch(repository: str, commit: str, folder: Path) -> Path:
+    """Fetches a commit of a repository, unless it is there."""
+    target = folder / repository.replace("/", "+")
     if not (target / ".git").is_dir():
         target.mkdir(parents=True)
-        address = f"https://github.com/{program.repository}.git"
-        fetch_commit = ("fetch", "-q", "--depth", "1", address, program.commit)
+        address = f"https://github.com/{repository}.git"
+        fetch_commit = ("fetch", "-q", "--depth", "1", address, commit)
         for command in (("init", "-q"), fetch_commit, ("checkout", "-q", "FETCH_HEAD")):
             subprocess.run(["git", "-C", str(target), *command], check=True)
+    return target
+
+
+def prepare(program: Program, folder: Path) -> Path:
+    """Fetches what a program needs, and returns its folder."""
+    target = fetch(program.repository, program.commit, folder)
+    if program.beside is not None:
+        name, repository, commit = program.beside
+        other = fetch(repository, commit, folder)
+        if not (target / name).exists():
+            (target / name).symlink_to(other.resolve(), target_is_directory=True)
     return target
 
 
@@ -126,7 +158,7 @@ def main(folder: Path) -> int:
     failed = 0
     for program in PROGRAMS:
         started = time.perf_counter()
-        passed, last = run(program, fetch(program, folder))
+        passed, last = run(program, prepare(program, folder))
         failed += not passed
         name = program.command[0] if program.command[0] != "-c" else program.prints
         seconds, state = time.perf_counter() - started, "ran" if passed else "FAILED"
