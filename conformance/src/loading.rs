@@ -45,11 +45,11 @@ pub const SINGULAR: &str = "inertias that are singular";
 /// Returns why our loader rejects what MuJoCo accepts, if it is meant to.
 pub fn deliberate(error: &LoadError) -> Option<&'static str> {
     match &error.kind {
-        ErrorKind::UnknownElement(_)
-        | ErrorKind::UnknownAttribute(_)
+        ErrorKind::UnknownElement { .. }
+        | ErrorKind::UnknownAttribute { .. }
         | ErrorKind::Plugin { .. }
         | ErrorKind::UnsupportedElement { .. } => Some("elements and attributes that are not supported"),
-        ErrorKind::OutOfRange { .. } | ErrorKind::OutOfBounds { .. } => {
+        ErrorKind::OutOfRange { .. } | ErrorKind::OutOfBounds { .. } | ErrorKind::BadSize { .. } => {
             Some("numbers outside their physical range, such as negative damping")
         }
         ErrorKind::BadNumber { .. } => Some("not a number, infinity and hexadecimal numbers"),

@@ -113,7 +113,9 @@ impl Simulation {
     /// A file that is missing or too large; a document that is not understood or cannot be compiled, with its place.
     pub fn from_file(path: impl AsRef<Path>) -> Result<Self, SimulationError> {
         let (assets, file) = FileSystem::beside(path)?;
-        let model = compile(load(&assets, &file)?)?;
+        let model = load(&assets, &file)
+            .and_then(compile)
+            .map_err(|error| error.in_folder(assets.folder()))?;
         Ok(Self::new(Arc::new(model), Arc::new(assets)))
     }
 

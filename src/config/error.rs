@@ -183,21 +183,6 @@ pub(super) fn shown(text: &str) -> String {
     out
 }
 
-/// Returns the known name nearest to `text`, if it is so near that it was probably meant.
-pub(super) fn nearest(text: &str, known: impl Iterator<Item = &'static str>) -> Option<&'static str> {
-    const LONGEST: usize = 64; // the distance costs the product of the lengths
-    if text.len() > LONGEST {
-        return None;
-    }
-    let text = text.to_ascii_lowercase(); // names are ASCII, and tables of all other letters are 16 kB of a WebAssembly module
-    known
-        .map(|name| (strsim::damerau_levenshtein(&text, name), name))
-        // a longer name may have more typing errors; with more allowed, most words would resemble some key
-        .filter(|(distance, name)| *distance <= 1 + name.len() / 4)
-        .min_by_key(|(distance, _)| *distance)
-        .map(|(_, name)| name)
-}
-
 fn hint(nearest: &Option<&'static str>) -> String {
     nearest.map_or_else(String::new, |name| format!("; did you mean `{name}`?"))
 }

@@ -1,7 +1,7 @@
 //! The values of keys: their types, their notation, their bounds.
 
-use super::error;
 use super::schedule::AgeSchedule;
+use crate::text;
 
 /// The value of a key.
 #[derive(Clone, Debug, PartialEq)]
@@ -248,7 +248,7 @@ impl KeyKind {
 
 /// Finds one of some names.
 fn named(text: &str, names: &[&'static str]) -> Result<&'static str, ValueFault> {
-    let nearest = || error::nearest(text, names.iter().copied());
+    let nearest = || text::nearest(text, names.iter().copied());
     let found = names.iter().find(|name| **name == text).copied();
     found.ok_or_else(|| ValueFault::OutOfRange { nearest: nearest() })
 }

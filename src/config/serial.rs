@@ -12,6 +12,7 @@ use super::kinds::{KeyKind, KeyValue, ValueFault};
 use super::table::KEYS;
 use super::table::Key;
 use super::{Config, ConfigError, yaml};
+use crate::text::nearest;
 
 /// Name in errors of a configuration that is not a file.
 const NAME: &str = "configuration";
@@ -137,7 +138,7 @@ impl Visitor<'_> for KeySeed {
             E::custom(ConfigError::UnknownKey {
                 location: place(),
                 key: error::shown(name),
-                nearest: error::nearest(name, KEYS.iter().map(|key| key.name)),
+                nearest: nearest(name, KEYS.iter().map(|key| key.name)),
             })
         })
     }

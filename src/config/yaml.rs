@@ -9,6 +9,7 @@ use super::kinds::{KeyKind, KeyValue, ValueFault};
 use super::table::KEYS;
 use super::table::Key;
 use super::{Config, ConfigError};
+use crate::text::nearest;
 use granit_parser::{Event, Marker, Options, Parser, ScalarStyle, ScanError};
 
 /// Line and column, both counted from 1.
@@ -133,7 +134,7 @@ impl<'t> YamlReader<'t> {
             (_, at) => return self.unsupported(at, "a key that is a list or mapping"),
         };
         let Some(index) = KEYS.iter().position(|key| key.name == name) else {
-            let nearest = error::nearest(&name, KEYS.iter().map(|key| key.name));
+            let nearest = nearest(&name, KEYS.iter().map(|key| key.name));
             let location = self.location(at);
             return Err(ConfigError::UnknownKey {
                 location,

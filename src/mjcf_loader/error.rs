@@ -1,7 +1,8 @@
 //! Errors with their place.
 
-use crate::text::quoted;
+use crate::text::{quoted, suggestion};
 use std::fmt;
+use std::path::Path;
 
 use crate::assets::AssetError;
 
@@ -49,6 +50,14 @@ pub struct LoadError {
 }
 
 impl LoadError {
+    /// Names the file as seen from where `folder` is, in which the source of the assets looks for files, for people who gave the path
+    /// of a file.
+    #[must_use]
+    pub fn in_folder(mut self, folder: &Path) -> Self {
+        self.place.file = folder.join(&self.place.file).display().to_string();
+        self
+    }
+
     pub(super) fn in_file(file: &str, kind: impl Into<ErrorKind>) -> Self {
         let place = Location {
             file: file.to_owned(),
@@ -58,6 +67,15 @@ impl LoadError {
             place: Box::new(place),
             kind: kind.into(),
         }
+    }
+}
+
+/// Returns the text for a count of `min` to `max`.
+fn span(min: usize, max: usize) -> String {
+    if min == max {
+        min.to_string()
+    } else {
+        format!("{min} to {max}")
     }
 }
 
@@ -95,8 +113,13 @@ pub enum ErrorKind {
     #[error("the model of file \"{}\" cannot be a part of itself", quoted(.0))]
     ModelInItself(String),
     /// An element that is unknown, unsupported or in the wrong place.
-    #[error("unknown element \"{}\"", quoted(.0))]
-    UnknownElement(String),
+    #[error("unknown element \"{}\"{}", quoted(.name), suggestion(*.nearest))]
+    UnknownElement {
+        /// The name found.
+        name: String,
+        /// The name of an element that may stand there and was probably meant.
+        nearest: Option<&'static str>,
+    },
     /// An element that MuJoCo has since a version after 3.3.0.
     #[error("element \"{}\" is of a later MuJoCo than 3.3.0, whose language this is: remove it", quoted(.0))]
     LaterElement(String),
@@ -120,8 +143,13 @@ pub enum ErrorKind {
     #[error("element \"{}\" is given twice", quoted(.0))]
     RepeatedElement(&'static str),
     /// An attribute that is unknown or unsupported.
-    #[error("unknown attribute \"{}\"", quoted(.0))]
-    UnknownAttribute(String),
+    #[error("unknown attribute \"{}\"{}", quoted(.name), suggestion(*.nearest))]
+    UnknownAttribute {
+        /// The name found.
+        name: String,
+        /// The attribute of the element that was probably meant.
+        nearest: Option<&'static str>,
+    },
     /// An attribute that MuJoCo has since a version after 3.3.0, with a value that changes something.
     #[error("attribute \"{}\" is of a later MuJoCo than 3.3.0, whose language this is: remove it", quoted(.0))]
     LaterAttribute(String),
@@ -178,6 +206,18 @@ pub enum ErrorKind {
         /// The values allowed.
         want: &'static str,
     },
+    /// A size of a shape that is zero, negative or missing.
+    #[error("size: {value} must be positive (number {number} of {count} for a {shape})")]
+    BadSize {
+        /// The shape, in the words of MJCF.
+        shape: &'static str,
+        /// Position of the number in `size`, from 1.
+        number: usize,
+        /// Count of the numbers that the shape has.
+        count: usize,
+        /// The number; 0 where it is missing.
+        value: f64,
+    },
     /// A whole number that is out of bounds.
     #[error("{attribute}: {value} must be from {min} to {max}")]
     OutOfBounds {
@@ -201,7 +241,7 @@ pub enum ErrorKind {
         limit: f64,
     },
     /// Too few or too many values.
-    #[error("{attribute}: {found} values, expected {min} to {max}")]
+    #[error("{attribute}: {found} value{}, expected {}", if *.found == 1 { "" } else { "s" }, span(*.min, *.max))]
     WrongCount {
         /// The attribute.
         attribute: &'static str,
@@ -221,8 +261,13 @@ pub enum ErrorKind {
         message: String,
     },
     /// A default class that was not declared.
-    #[error("unknown default class \"{}\"", quoted(.0))]
-    UnknownClass(String),
+    #[error("unknown default class \"{}\"{}", quoted(.name), suggestion(.nearest.as_deref()))]
+    UnknownClass {
+        /// The name found.
+        name: String,
+        /// The class that was probably meant.
+        nearest: Option<String>,
+    },
     /// A default class declared twice.
     #[error("default class \"{}\" is declared twice", quoted(.0))]
     DuplicateClass(String),
@@ -235,7 +280,7 @@ pub enum ErrorKind {
         name: String,
     },
     /// A name that no element has.
-    #[error("{attribute}: there is no {kind} \"{}\"", quoted(.name))]
+    #[error("{attribute}: there is no {kind} \"{}\"{}", quoted(.name), suggestion(.nearest.as_deref()))]
     UnknownName {
         /// The attribute that refers.
         attribute: &'static str,
@@ -243,6 +288,8 @@ pub enum ErrorKind {
         kind: &'static str,
         /// The name.
         name: String,
+        /// The name of an element of that kind that was probably meant.
+        nearest: Option<String>,
     },
     /// Valid syntax that makes no valid model.
     #[error("{0}")]

@@ -29,6 +29,7 @@ use super::surface::{Material, Texture};
 use super::table::Table;
 use super::xml::{ModelFile, Tree};
 use crate::math::order;
+use crate::text::nearest;
 use content::content;
 use insertion::Insertion;
 
@@ -131,9 +132,14 @@ impl<'t> Classes<'t> {
     /// Returns the class of an element: its own, or else that of the bodies around it.
     fn of(&self, element: &Element, around: &str) -> Result<&Class, LoadError> {
         let name = element.text("class").unwrap_or(around);
-        self.by_name
-            .get(name)
-            .ok_or_else(|| self.error(element, ErrorKind::UnknownClass(name.to_owned())))
+        self.by_name.get(name).ok_or_else(|| self.unknown(element, name))
+    }
+
+    /// Returns the error of an element that names a class that does not exist.
+    fn unknown(&self, element: &Element, name: &str) -> LoadError {
+        let nearest = nearest(name, self.by_name.keys().map(String::as_str)).map(str::to_owned);
+        let name = name.to_owned();
+        self.error(element, ErrorKind::UnknownClass { name, nearest })
     }
 
     fn error(&self, element: &Element, kind: ErrorKind) -> LoadError {

@@ -4,6 +4,7 @@ use super::attribute::{Alternatives, Attr, Value};
 use super::error::{ErrorKind, LoadError};
 use super::later::{self, LaterAttribute};
 use super::xml::{Node, Tree};
+use crate::text::nearest;
 
 /// The content allowed in an element: the attributes of its tables, and child elements.
 pub(super) struct Rule {
@@ -126,13 +127,15 @@ fn child_rule(tree: &Tree, child: usize, rule: &'static Rule) -> Result<&'static
         if let Some(kind) = unsupported(&tree.nodes[child]) {
             return tree.error(child, kind);
         }
-        let later = later::element(rule.name, name);
-        let kind = if later {
-            ErrorKind::LaterElement
+        let kind = if later::element(rule.name, name) {
+            ErrorKind::LaterElement(name.clone())
         } else {
-            ErrorKind::UnknownElement
+            ErrorKind::UnknownElement {
+                name: name.clone(),
+                nearest: nearest(name, rule.children.iter().map(|child| child.name)),
+            }
         };
-        tree.error(child, kind(name.clone()))
+        tree.error(child, kind)
     })
 }
 
@@ -148,6 +151,15 @@ fn meant<'a>(
     if let Some(attr) = find(name) {
         return Ok(Some((attr, text)));
     }
+    let unknown = || ErrorKind::UnknownAttribute {
+        name: name.to_owned(),
+        nearest: nearest(
+            name,
+            rule.attributes()
+                .filter(|attr| !(class && attr.own))
+                .map(|attr| attr.name),
+        ),
+    };
     let has = |attribute: &str| rule.attributes().any(|attr| attr.name == attribute);
     match later::attribute(rule.name, has, name, text) {
         Some(LaterAttribute::Nothing) => Ok(None),
@@ -156,12 +168,12 @@ fn meant<'a>(
         }
         Some(LaterAttribute::As(other, text)) => match find(other) {
             Some(attr) => Ok(Some((attr, text))),
-            None => Err(ErrorKind::UnknownAttribute(name.to_owned())),
+            None => Err(unknown()),
         },
         Some(LaterAttribute::Refused) => Err(ErrorKind::LaterAttribute(name.to_owned())),
         // MuJoCo reads these where it reads bodies, and looks for the attributes that it knows only
         None if ["frame", "replicate"].contains(&rule.name) => Ok(None),
-        None => Err(ErrorKind::UnknownAttribute(name.to_owned())),
+        None => Err(unknown()),
     }
 }
 

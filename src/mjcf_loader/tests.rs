@@ -181,7 +181,11 @@ fn actuators_are_checked() {
         "attributes \"joint\" and \"jointinparent\" are mutually exclusive",
     );
     told("velocity jointinparent='x'", "jointinparent: there is no joint \"x\"");
-    told("motor joint='j' actrange='0 1'", "unknown attribute \"actrange\"");
+    told(
+        "motor joint='j' ctrlranges='0 1'",
+        "unknown attribute \"ctrlranges\"; did you mean \"ctrlrange\"?",
+    );
+    told("motr joint='j'", "unknown element \"motr\"; did you mean \"motor\"?");
     told(
         "general joint='j' dyntype='user'",
         "dyntype=\"user\": not one of none, integrator, filter, filterexact, muscle",
@@ -232,6 +236,19 @@ fn actuators_are_checked() {
 }
 
 const NO_ACTIVATION: &str = "actrange applies, but the actuator has no activation: set dyntype, or actlimited to false";
+
+#[test]
+fn names_with_typing_errors_are_suggested() {
+    let hand = "<worldbody><body name='left_hand'><geom size='1'/></body></worldbody>";
+    check(
+        &format!("{hand}<contact><exclude body1='left_hnad' body2='world'/></contact>"),
+        "mujoco/contact/exclude: body1: there is no body \"left_hnad\"; did you mean \"left_hand\"?",
+    );
+    check(
+        "<default><default class='smooth'/></default><worldbody><geom class='smoth' size='1'/></worldbody>",
+        "mujoco/worldbody/geom: unknown default class \"smoth\"; did you mean \"smooth\"?",
+    );
+}
 
 #[test]
 fn constraints_are_checked() {

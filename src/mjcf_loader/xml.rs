@@ -370,7 +370,9 @@ impl FileReader<'_> {
         let fail = |kind: ErrorKind| Err(self.tree.error(at, kind));
         if let Some(&child) = node.children.first() {
             let name = self.tree.nodes[child].name.clone();
-            return Err(self.tree.error(child, ErrorKind::UnknownElement(name)));
+            return Err(self
+                .tree
+                .error(child, ErrorKind::UnknownElement { name, nearest: None }));
         }
         if node.filled {
             let what = "an include is empty: put comments before it";

@@ -1,4 +1,4 @@
-//! Text from outside, as messages quote it.
+//! Text from outside, as messages quote it, and the names that it may have meant.
 
 use std::fmt::Write as _;
 
@@ -24,6 +24,29 @@ pub fn quoted(text: &str) -> String {
     out
 }
 
+/// Returns the known name nearest to `text`, if it is so near that it was probably meant. Large and small ASCII letters count
+/// as equal.
+pub fn nearest<'n>(text: &str, known: impl Iterator<Item = &'n str>) -> Option<&'n str> {
+    const LONGEST: usize = 64; // the distance costs the product of the lengths
+    if text.len() > LONGEST {
+        return None;
+    }
+    // nearly all names are ASCII, and tables of all other letters are 16 kB of a WebAssembly module
+    let text = text.to_ascii_lowercase();
+    known
+        .filter(|name| name.len() <= LONGEST)
+        .map(|name| (strsim::damerau_levenshtein(&text, &name.to_ascii_lowercase()), name))
+        // a longer name may have more typing errors; with more allowed, most words would resemble some name
+        .filter(|(distance, name)| *distance <= 1 + name.len() / 4 && *distance < name.len())
+        .min_by_key(|(distance, _)| *distance)
+        .map(|(_, name)| name)
+}
+
+/// Returns what an error about an unknown name adds to suggest `nearest`; empty where there is none.
+pub fn suggestion(nearest: Option<&str>) -> String {
+    nearest.map_or_else(String::new, |name| format!("; did you mean \"{}\"?", quoted(name)))
+}
+
 /// Returns whether a character changes the direction or the order of others, or is not seen.
 fn is_format(c: char) -> bool {
     matches!(c, '\u{ad}' | '\u{61c}' | '\u{200b}'..='\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2060}'..='\u{206f}' | '\u{feff}')
@@ -40,5 +63,20 @@ mod tests {
         let long = "é".repeat(300);
         assert_eq!(quoted(&long), format!("{}... (600 bytes)", "é".repeat(200)));
         assert_eq!(quoted(&"x".repeat(200)), "x".repeat(200));
+    }
+
+    #[test]
+    fn suggestions_are_names_with_few_typing_errors() {
+        let known = ["left_hand", "right_hand", "a", "Head"];
+        let find = |text: &str| nearest(text, known.into_iter());
+        assert_eq!(find("left_hnad"), Some("left_hand"));
+        assert_eq!(find("RIGHT_HAND"), Some("right_hand"));
+        assert_eq!(find("haed"), Some("Head"));
+        assert_eq!(find("foot"), None);
+        // a name of one letter is near to every other one, so that it says nothing
+        assert_eq!(find("b"), None);
+        assert_eq!(find(&"left_hand".repeat(8)), None);
+        assert_eq!(suggestion(find("haed")), "; did you mean \"Head\"?");
+        assert_eq!(suggestion(None), "");
     }
 }

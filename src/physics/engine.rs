@@ -288,6 +288,8 @@ fn check_bounds(model: &Model, s: &State, fields: &[(&'static str, &Vec<f64>)]) 
         return Err(EngineError::Diverged {
             step: s.step,
             joint: model.jnt_name[joint].clone(),
+            number: joint,
+            body: model.body_name[model.jnt_bodyid[joint]].clone(),
             what,
             value: values[worst],
         });

@@ -95,14 +95,18 @@ pub enum EngineError {
     },
     /// The simulation diverged.
     #[error(
-        "the simulation diverged in step {step} at joint {joint:?} ({what} = {value:e}): reset it, and use smaller actions, \
-         forces or time steps"
+        "the simulation diverged in step {step} at joint {} ({what} = {value:e}): reset it, and use smaller actions, \
+         forces or time steps", joint_text(.joint, *.number, .body)
     )]
     Diverged {
         /// Steps done before.
         step: u64,
-        /// Joint whose coordinate is out of bounds.
+        /// Name of the joint whose coordinate is out of bounds; may be empty.
         joint: String,
+        /// Index of that joint.
+        number: usize,
+        /// Name of its body; may be empty.
+        body: String,
         /// Quantity.
         what: &'static str,
         /// Its value.
@@ -119,6 +123,15 @@ pub enum EngineError {
         /// Names of the geoms, in quotes; the number of one without a name.
         geoms: [String; 2],
     },
+}
+
+/// Returns the name of a joint in quotes, or its number and its body if it has none.
+fn joint_text(joint: &str, number: usize, body: &str) -> String {
+    match (joint, body) {
+        ("", "") => number.to_string(),
+        ("", body) => format!("{number} of body {body:?}"),
+        (joint, _) => format!("{joint:?}"),
+    }
 }
 
 /// Checks a number against its limit.

@@ -268,7 +268,7 @@ fn mocap_bodies_stand_in_the_world_without_joints() {
     let error = load_str(text, "m.xml", &MemoryAssets::new())
         .expect_err("refused")
         .to_string();
-    assert!(error.ends_with("mpos: 2 values, expected 3 to 3"), "{error}");
+    assert!(error.ends_with("mpos: 2 values, expected 3"), "{error}");
 }
 
 #[test]

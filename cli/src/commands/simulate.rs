@@ -120,10 +120,10 @@ impl Simulate {
 
     /// Reads and compiles the model.
     fn load(&self) -> Result<(Arc<Model>, FileSystem), Box<dyn Error>> {
-        let named = |e: &dyn Error| format!("{}: {e}", self.model.display());
         let (assets, file) = FileSystem::beside(&self.model)?;
-        let spec = load(&assets, &file).map_err(|e| named(&e))?;
-        let model = compile(spec).map_err(|e| named(&e))?;
+        let model = load(&assets, &file)
+            .and_then(compile)
+            .map_err(|error| error.in_folder(assets.folder()))?;
         Ok((Arc::new(model), assets))
     }
 

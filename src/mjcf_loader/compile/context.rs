@@ -10,6 +10,7 @@ use crate::error::{ErrorKind, LoadError};
 use crate::math::{Quat, Vec3, add, mat_vec, quat_mul, quat_rotate, quat_to_mat};
 use crate::model::{Arrays, JointType};
 use crate::surface::Texture;
+use crate::text::nearest;
 use crate::xml::Tree;
 
 /// Ids by name for one kind of element.
@@ -42,16 +43,17 @@ impl Names {
 
     /// Returns the id of the element that a reference names.
     pub fn find(&self, tree: &Tree, at: usize, attribute: &'static str, name: &str) -> Result<usize, LoadError> {
-        let wrong = |kind| Err(tree.error(at, kind));
-        let (kind, owned) = (self.kind, || name.to_owned());
-        match self.ids.get(name) {
-            Some(id) => Ok(*id),
-            None => wrong(ErrorKind::UnknownName {
+        self.ids.get(name).copied().ok_or_else(|| {
+            let nearest = nearest(name, self.ids.keys().map(String::as_str)).map(str::to_owned);
+            let (kind, name) = (self.kind, name.to_owned());
+            let kind = ErrorKind::UnknownName {
                 attribute,
                 kind,
-                name: owned(),
-            }),
-        }
+                name,
+                nearest,
+            };
+            tree.error(at, kind)
+        })
     }
 }
 

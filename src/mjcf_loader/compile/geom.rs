@@ -10,6 +10,7 @@ use crate::error::{ErrorKind, LoadError};
 use crate::math::{Quat, Vec3, add, mat_vec, quat_mul, quat_to_mat};
 use crate::model::{Arrays, GeomType, HField};
 use crate::settings::single;
+use crate::words::SHAPES;
 
 /// Returns the position, orientation and size of a shape, from its frame or from `fromto`.
 pub(super) fn place(
@@ -44,17 +45,18 @@ pub(super) fn place(
 /// infinite.
 pub(super) fn check_size(context: &Context, at: usize, kind: GeomType, size: &Vec3) -> Result<(), LoadError> {
     let first = if kind == GeomType::Plane { 2 } else { 0 };
-    match size[first..size_count(kind)].iter().find(|value| **value <= 0.0) {
-        Some(&value) => Err(context.error(
-            at,
-            ErrorKind::OutOfRange {
-                attribute: "size",
-                value,
-                want: "positive",
-            },
-        )),
-        None => Ok(()),
-    }
+    let count = size_count(kind);
+    let Some(index) = (first..count).find(|&index| size[index] <= 0.0) else {
+        return Ok(());
+    };
+    let word = SHAPES.values.iter().position(|&shape| shape == kind);
+    let error = ErrorKind::BadSize {
+        shape: word.map_or("", |word| SHAPES.names[word]),
+        number: index + 1,
+        count,
+        value: size[index],
+    };
+    Err(context.error(at, error))
 }
 
 const SHELL: &str = "a mesh is a shell by inertia=\"shell\" of <mesh>, not by shellinertia of its geoms";

@@ -3,12 +3,13 @@
 use std::fmt;
 
 use super::element_id::ElementId;
-use super::error::{EditError, nearest};
+use super::error::EditError;
 use crate::assets::directory;
 use crate::attribute::Attr;
 use crate::elements::MUJOCO;
 use crate::limits::Limits;
 use crate::schema::{DEFAULT, Rule};
+use crate::text::nearest;
 
 /// An element with its attributes as text.
 #[derive(Clone)]

@@ -4,14 +4,14 @@ use std::fmt;
 
 use super::element_id::ElementId;
 use crate::error::{ErrorKind, LoadError};
-use crate::text::quoted;
+use crate::text::{quoted, suggestion};
 
 /// An edit that is refused. The document is as it was before.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum EditError {
     /// An element that may not stand in another.
-    #[error("<{parent}> cannot hold <{}>{}", quoted(.name), hint(.nearest))]
+    #[error("<{parent}> cannot hold <{}>{}", quoted(.name), suggestion(*.nearest))]
     UnknownElement {
         /// The element around it.
         parent: &'static str,
@@ -21,7 +21,7 @@ pub enum EditError {
         nearest: Option<&'static str>,
     },
     /// An attribute that an element does not have.
-    #[error("<{element}> has no attribute \"{}\"{}", quoted(.name), hint(.nearest))]
+    #[error("<{element}> has no attribute \"{}\"{}", quoted(.name), suggestion(*.nearest))]
     UnknownAttribute {
         /// The element.
         element: &'static str,
@@ -103,22 +103,4 @@ impl fmt::Display for SettingsConflict {
             "{attribute}=\"{own}\" here, and {attribute}=\"{other}\" where the attached body is from"
         )
     }
-}
-
-fn hint(nearest: &Option<&'static str>) -> String {
-    nearest.map_or_else(String::new, |name| format!("; did you mean \"{name}\"?"))
-}
-
-/// Returns the known name nearest to `text`, if it is so near that it was probably meant.
-pub(super) fn nearest(text: &str, known: impl Iterator<Item = &'static str>) -> Option<&'static str> {
-    const LONGEST: usize = 64; // the distance costs the product of the lengths
-    if text.len() > LONGEST {
-        return None;
-    }
-    let text = text.to_ascii_lowercase();
-    known
-        .map(|name| (strsim::damerau_levenshtein(&text, &name.to_ascii_lowercase()), name))
-        .filter(|(distance, name)| *distance <= 1 + name.len() / 4)
-        .min_by_key(|(distance, _)| *distance)
-        .map(|(_, name)| name)
 }

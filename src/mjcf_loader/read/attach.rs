@@ -13,6 +13,7 @@ use crate::error::{ErrorKind, LoadError};
 use crate::math::order;
 use crate::schema::Element;
 use crate::table::Table;
+use crate::text::nearest;
 use crate::xml::Tree;
 
 const ABSENT: &str = "this refers to something that is not attached, by a name that another element of the document has, which MuJoCo 3.3.0 \
@@ -28,7 +29,8 @@ pub(super) fn attach_model(
     let attach = Attach::read(e);
     // out of the document while it is read, because the document is written at the same time
     let Some(mut model) = document.models.remove(&attach.model) else {
-        return Err(unknown(tree, &attach, "model", &attach.model));
+        let models = document.models.keys().map(String::as_str);
+        return Err(unknown(tree, &attach, "model", &attach.model, models));
     };
     if !model.flexes.is_empty() || !model.flexcomps.is_empty() {
         return Err(tree.error(attach.at, ErrorKind::Invalid(COPIED)));
@@ -38,9 +40,20 @@ pub(super) fn attach_model(
     taken
 }
 
-fn unknown(tree: &Tree, attach: &Attach, kind: &'static str, name: &str) -> LoadError {
-    let (attribute, name) = (kind, name.to_owned());
-    tree.error(attach.at, ErrorKind::UnknownName { attribute, kind, name })
+fn unknown<'a>(
+    tree: &Tree,
+    attach: &Attach,
+    kind: &'static str,
+    name: &str,
+    known: impl Iterator<Item = &'a str>,
+) -> LoadError {
+    let error = ErrorKind::UnknownName {
+        attribute: kind,
+        kind,
+        name: name.to_owned(),
+        nearest: nearest(name, known).map(str::to_owned),
+    };
+    tree.error(attach.at, error)
 }
 
 /// The part of a model that an `<attach>` copies.
@@ -152,7 +165,8 @@ fn take(
     document.moved_keys.extend(keys);
     let bodies = &model.bodies;
     let Some(root) = bodies.iter().position(|body| body.name == attach.body) else {
-        return Err(unknown(tree, attach, "body", &attach.body));
+        let names = bodies.iter().map(|body| &*body.name);
+        return Err(unknown(tree, attach, "body", &attach.body, names));
     };
     // children follow their parents, depth first
     let below = bodies[root + 1..].iter().take_while(|body| body.parent >= root).count();

@@ -1,7 +1,7 @@
 //! The place in the document at which elements are inserted, and their default class.
 
 use super::Classes;
-use crate::error::{ErrorKind, LoadError};
+use crate::error::LoadError;
 use crate::schema::Element;
 
 /// The body, and the frame in it, that new elements are inserted into.
@@ -21,6 +21,6 @@ pub(super) fn known(e: &Element, class: &str, classes: &Classes) -> Result<(), L
     if classes.by_name.contains_key(class) {
         Ok(())
     } else {
-        Err(classes.error(e, ErrorKind::UnknownClass(class.to_owned())))
+        Err(classes.unknown(e, class))
     }
 }

@@ -9,10 +9,15 @@ fn values_are_checked() {
     check_world("<geom size='1e999'/>", "geom: size: \"1e999\" is not a finite number");
     check_world("<geom pos='0 0 -inf'/>", "geom: pos: \"-inf\" is not a finite number");
     check_world("<geom size='-1'/>", "geom: size: -1 must be at least 0");
-    check_world("<geom size='0'/>", "geom: size: 0 must be positive");
-    check_world("<geom size=''/>", "geom: size: 0 must be positive");
+    let missing = "geom: size: 0 must be positive (number";
+    check_world("<geom size='0'/>", &format!("{missing} 1 of 1 for a sphere)"));
+    check_world("<geom size=''/>", &format!("{missing} 1 of 1 for a sphere)"));
+    check_world(
+        "<geom size='.1 .1' type='box'/>",
+        &format!("{missing} 3 of 3 for a box)"),
+    );
     check_world("<geom size='1 1 1 1'/>", "geom: size: 4 values, expected 1 to 3");
-    check_world("<geom size='1' pos='1 2'/>", "geom: pos: 2 values, expected 3 to 3");
+    check_world("<geom size='1' pos='1 2'/>", "geom: pos: 2 values, expected 3");
     check_world("<geom size='1' rgba='1 1 1 2'/>", "");
     check(
         "<asset><material name='m' shininess='2'/></asset>",
@@ -28,7 +33,7 @@ fn values_are_checked() {
         "geom: contype: \"1.5\" is not a finite number",
     );
     check_world("<geom size='1' condim='2'/>", "geom: condim must be 1, 3, 4 or 6");
-    check_world("<geom size='1' type='box'/>", "geom: size: 0 must be positive");
+    check_world("<geom size='1' type='box'/>", &format!("{missing} 2 of 3 for a box)"));
     check_world(
         "<geom pos='0 0 -2e30'/>",
         &format!("geom: pos: {} must be at most 1e30 in magnitude", -2e30),
@@ -200,7 +205,7 @@ fn lights_follow_and_cameras_carry_numbers() {
     check("<visual><rgba contactforce='1 0 0 2'/></visual>", "");
     check(
         "<visual><rgba contactforce='1 0 0'/></visual>",
-        "mujoco/visual/rgba: contactforce: 3 values, expected 4 to 4",
+        "mujoco/visual/rgba: contactforce: 3 values, expected 4",
     );
     check(
         "<visual><rgba sky='1 0 0 1'/></visual>",
@@ -252,7 +257,7 @@ fn groups_of_any_sign_and_unknown_attributes_of_frames_are_taken() {
     let arrays = load_str(&text, "m.xml", &source(&[])).expect("loads").arrays;
     assert_eq!((arrays.geom_group, arrays.site_group), (vec![-3, 0, 0, 0], vec![7]));
     assert_eq!(arrays.geom_name[2..], ["g0", "g1"]);
-    check_world("<frame pos='a'/>", "frame: pos: 1 values, expected 3 to 3");
+    check_world("<frame pos='a'/>", "frame: pos: 1 value, expected 3");
 }
 
 #[test]

@@ -40,6 +40,11 @@ impl FileSystem {
         })?;
         Ok((Self::new(file.parent().unwrap_or(Path::new(""))), name.to_owned()))
     }
+
+    /// Returns the folder from which files are looked for.
+    pub fn folder(&self) -> &Path {
+        &self.folder
+    }
 }
 
 impl AssetSource for FileSystem {

@@ -6,7 +6,7 @@ use crate::env::Env;
 use crate::math::{Quat, Vec3, add_scaled, quat_normalize, rotation_between, scale, sub};
 use crate::model::{JointType, Model};
 use crate::runs::Recorder;
-use crate::text::quoted;
+use crate::text::{nearest, quoted, suggestion};
 
 /// The way of playing a motion.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -152,7 +152,7 @@ impl<'m> MotionTrajectory<'m> {
         let find = |name: &String| {
             let found = own.joint.iter().position(|&joint| model.jnt_name[joint] == *name);
             found.ok_or_else(|| MotionError::Joint {
-                hint: hint(name, own.joint.iter().map(|&joint| &*model.jnt_name[joint])),
+                hint: suggestion(nearest(name, own.joint.iter().map(|&joint| &*model.jnt_name[joint]))),
                 name: quoted(name),
             })
         };
@@ -234,16 +234,6 @@ impl<'m> MotionTrajectory<'m> {
         let turned = std::array::from_fn(|i| q[i] + share * (sign * s[i] - q[i]));
         (add_scaled(p, sub(r, p), share), quat_normalize(turned))
     }
-}
-
-/// Suggests the intended joint.
-fn hint<'n>(name: &str, known: impl Iterator<Item = &'n str>) -> String {
-    const LONGEST: usize = 64; // the distance costs the product of the lengths
-    if name.len() > LONGEST {
-        return String::new();
-    }
-    let nearest = known.min_by_key(|known| strsim::damerau_levenshtein(name, known));
-    nearest.map_or_else(String::new, |nearest| format!("; did you mean {nearest:?}?"))
 }
 
 /// Returns the indices of MIMo's free joint in positions and velocities, if he has one.

@@ -175,6 +175,7 @@ fn invariant_8_divergence_names_step_and_joint() {
                 joint,
                 what: quantity,
                 value,
+                ..
             } => {
                 println!("{what:10} -> step {step}, joint {joint}, {quantity} = {value:e}");
                 assert_eq!(step, steps_before);
