@@ -66,6 +66,7 @@
  * @property {number[] | null} page_regards the same, within 15 degrees of the axis of the eye's camera, as BabyBench's page describes it
  * @property {number[] | null} kit_regards the same, within 15 degrees of the -z axis of the eye's body, as the Python kit computes it
  * @property {number[] | null} gaze_angles between the axis of each eye and each hand, rad
+ * @property {number | null} age the age with which the episode began, months, where `age` is a schedule
  * @property {Record<string, number> | null} reflexes share of the episode's physics steps in which each reflex acted, by name
  * @property {number | null} score that the episode would have alone
  * @property {boolean | null} is_success whether a task's goal is reached

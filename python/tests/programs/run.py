@@ -82,11 +82,9 @@ PROGRAMS = (
             ("D/scripts/d_touch_check", "15897"),
             ("D/scripts/d_touch_control", "5%"),
             ("D/scripts/diag_controllability", "qpos"),
-            ("E/scripts/e_infant_neck", ""),
             ("E/scripts/e_limb_strength", "NOTE"),
             ("E/scripts/e_reach_space", "NOTE"),
             ("E/scripts/e_toy_check", "verdict"),
-            ("E/scripts/e_vor", ""),
         )
     ),
     Program(*_MIMO, ("-c", _BENCHMARK), "ran"),

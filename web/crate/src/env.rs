@@ -262,6 +262,7 @@ impl Core {
                 "gaze_angles",
                 optional(info.details.gaze_angles, |angles| js::numbers(&angles.to_array())),
             ),
+            ("age", optional(info.details.age, JsValue::from)),
             (
                 "reflexes",
                 optional(info.details.reflexes, |shares| {

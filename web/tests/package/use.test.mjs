@@ -63,6 +63,16 @@ test("MIMo 3 has a chest", () => {
 
 const rooms = fileURLToPath(new URL("../../../docs/guide/rooms", import.meta.url));
 
+test("MIMo grows by a schedule", () => {
+  const env = new Env("scene: base\nbehavior: none\nvision_active: false\ntouch_active: false\nage: {0: 1, 4: 6}\n");
+  env.reset(0);
+  const first = env.info.age;
+  for (let k = 0; k < 4; k++) env.step();
+  assert.equal(env.info.age, 1, "an episode keeps its age");
+  env.reset(0);
+  assert.deepEqual([first, env.info.age], [1, 6]);
+});
+
 test("a room of one's own is made of files in memory", () => {
   const assets = { "rooms/play_room.xml": readFileSync(join(rooms, "play_room.xml")) };
   const settings = { scene: "rooms/play_room.xml", behavior: "self_touch", age: 6, vision_active: false };
