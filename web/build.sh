@@ -2,7 +2,7 @@
 # Builds web/dist/: the page, all that a static host needs, and in web/dist/babybench/ the npm package.
 #   web/build.sh [package]   # package: without the page
 # Needs Rust, Node 20 and the Rust target wasm32-unknown-unknown, which rustup adds here where it is missing; or RUSTC_WASM, a compiler that
-# has it, as scripts/toolchain.sh makes one.
+# has it, as scripts/toolchain.sh makes one. BINDGEN names the program of web/bindgen; without it it is built.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -34,20 +34,21 @@ simd='-C target-feature=+simd128'
 small="--remap-path-prefix=$PWD/="
 for sources in "${CARGO_HOME:-$HOME/.cargo}"/registry/src/*/; do small+=" --remap-path-prefix=$sources="; done
 for limit in inline-threshold=15 inlinehint-threshold=70 unroll-threshold=200 unroll-runtime=false; do small+=" -C llvm-args=-$limit"; done
-module() { # PACKAGE FLAGS
-  env RUSTFLAGS="$2" ${RUSTC_WASM:+RUSTC="$RUSTC_WASM"} cargo build --locked --profile web --target "$wasm" --target-dir "$target/wasm" -p "$1"
+module() { # PACKAGE PROFILE FLAGS
+  env RUSTFLAGS="$3" ${RUSTC_WASM:+RUSTC="$RUSTC_WASM"} cargo build --locked --profile "$2" --target "$wasm" --target-dir "$target/wasm" -p "$1"
 }
-module babybench-web "$simd $small"
-module babybench-onnx "$simd"
+module babybench-web web "$simd $small"
+module babybench-onnx web-onnx "$simd"
 
-cargo build --locked --profile testing -p babybench-bindgen # last, as other builds in this folder may keep it waiting
+bindgen=${BINDGEN:-$target/testing/babybench-bindgen}
+if [ -z "${BINDGEN:-}" ]; then cargo build --locked --profile testing -p babybench-bindgen; fi
 rm -rf "$package"
 mkdir -p "$package"
-bind() { # MODULE NAME: JavaScript beside a module
-  "$target/testing/babybench-bindgen" "$target/wasm/$wasm/web/$1.wasm" "$package" "$2"
+bind() { # PROFILE/MODULE NAME: JavaScript beside a module
+  "$bindgen" "$target/wasm/$wasm/$1.wasm" "$package" "$2"
 }
-bind babybench_web core
-bind babybench_onnx onnx_core
+bind web/babybench_web core
+bind web-onnx/babybench_onnx onnx_core
 
 # Faces that MIMo seldom makes are fetched when they are wanted.
 mkdir "$package/faces"

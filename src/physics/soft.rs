@@ -31,6 +31,9 @@ pub struct SoftOptions {
 
 /// Advances a state by MuJoCo's formulation in joint space.
 ///
+/// It is named after its soft constraints: as in MuJoCo, contacts, limits and equalities give a little under force. Soft bodies are flexes of
+/// the model, which it simulates, too.
+///
 /// A step computes kinematics, inertia, contacts, constraint rows, velocities, forces, solves for the acceleration with the
 /// solver of the model, and integrates with its integrator: by default Newton's method, and semi-implicit Euler with implicit
 /// joint damping. After warm-up it allocates nothing.

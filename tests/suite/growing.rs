@@ -2,6 +2,7 @@
 
 use babybench::config::{AgeSchedule, Behavior, Reflex, ReflexSet, StrengthModel};
 use babybench::env::EnvError;
+use babybench::runs::start_training;
 use babybench::{AutoresetMode, Blueprint, Config, Env, VectorEnv, VectorOptions};
 
 use crate::common::*;
@@ -239,5 +240,24 @@ fn a_record_of_a_childhood_is_repeated_with_the_same_bits() {
         let repeated = record.replay(number, &mut again).expect("it can be repeated");
         assert_eq!(repeated.first_difference, None, "episode {number}");
         assert_eq!(again.config().age, Some(1.0 + 0.5 * number as f64));
+    }
+}
+
+#[test]
+fn a_resumed_run_goes_on_growing() {
+    let folder = Folder::new("growing");
+    let blueprint = blueprint(Config {
+        save_dir: folder.path().display().to_string(),
+        ..growing()
+    });
+    for (run, ages) in [[1.0, 1.5], [2.0, 2.5], [3.0, 3.0]].into_iter().enumerate() {
+        let mut env = start_training(&blueprint, run > 0).expect("a log to go on with");
+        for age in ages {
+            env.reset(None).expect("no divergence");
+            assert_eq!(env.config().age, Some(age), "run {run}");
+            random_steps(env.env_mut(), EPISODE as usize);
+        }
+        env.reset(None).expect("no divergence");
+        env.finish_training().expect("the log can be written");
     }
 }
