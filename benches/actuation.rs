@@ -1,4 +1,4 @@
-//! Measures the cost of actuation models and snapshots: `cargo bench --bench actuation`. Figures are medians.
+//! Measures the cost of actuation models and snapshots: `cargo bench --bench actuation`. Numbers are medians.
 
 use std::hint::black_box;
 use std::time::Instant;

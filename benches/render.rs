@@ -1,5 +1,5 @@
-//! Measures the cost of pictures: `cargo bench --bench render`. Compare with what MuJoCo's own renderer needs on the
-//! same machine at the same time, which `conformance/scripts/render_goldens.py --time` prints.
+//! Measures the cost of pictures: `cargo bench --bench render`. Compare with the cost of MuJoCo's own renderer on the same machine at the same time,
+//! which `conformance/scripts/render_goldens.py --time` prints.
 
 #[path = "../tests/common/mod.rs"]
 mod common;

@@ -1,6 +1,5 @@
-//! Measures the cost of the eyes of 64 environments, in one submission to a GPU and by the CPU renderer, in the same
-//! run: `cargo bench --features wgpu --bench render_gpu`. `WGPU_BACKEND` (vulkan, gl, metal, dx12) chooses another
-//! adapter.
+//! Measures the cost of the eyes of 64 environments, in one submission to a GPU and with the CPU renderer, in the same run:
+//! `cargo bench --features wgpu --bench render_gpu`. `WGPU_BACKEND` (vulkan, gl, metal, dx12) chooses another adapter.
 
 #[path = "../tests/common/mod.rs"]
 mod common;
@@ -37,7 +36,7 @@ fn median(mut values: Vec<f64>) -> f64 {
     values[values.len() / 2]
 }
 
-/// Prints one line of the table: the median round.
+/// Prints one line of the table, from the median round.
 fn report(name: &str, images: usize, rounds: &[[f64; 2]]) -> f64 {
     let wall = median(rounds.iter().map(|r| r[0]).collect());
     let cpu: f64 = rounds.iter().map(|r| r[1]).sum::<f64>() / rounds.len() as f64;

@@ -216,7 +216,7 @@ fn anatomy(bench: &mut Bench, name: &str, config: &Config) {
     println!("parts/{name}: on average {contacts:.1} contacts, {rows:.1} rows, {iterations:.1} Newton iterations");
 }
 
-/// Measures resets at which MIMo grows: to ages that are compiled first, and to the same ages again.
+/// Measures resets at which MIMo grows: first to ages that must be compiled, then to the same ages again.
 fn growth(bench: &mut Bench, name: &str, config: &Config) {
     if !bench.wants(&format!("growth/{name}")) {
         return;
@@ -248,7 +248,7 @@ fn growth(bench: &mut Bench, name: &str, config: &Config) {
     report(&format!("growth/{name}/again"), again, base);
 }
 
-/// Measures what all reflexes add to a step. Their gain is so small that both environments move alike.
+/// Measures what all reflexes add to a step. Their gain is so small that both environments move in the same way.
 fn reflexes(bench: &mut Bench, model: ActuationModel) {
     const STEPS: usize = 20;
     let name = format!("reflexes/{model}");
@@ -276,7 +276,7 @@ fn reflexes(bench: &mut Bench, model: ActuationModel) {
         }
         envs[0].sample_action(&mut action);
         let mut took = [0.0; 2];
-        // by turns, so that neither is always the first
+        // in turn, so that neither is always the first
         for which in [sample as usize % 2, 1 - sample as usize % 2] {
             let start = Instant::now();
             for _ in 0..STEPS {

@@ -59,7 +59,7 @@ fn vector_of(n: usize, blueprint: &Blueprint, threads: usize) -> VectorEnv {
     envs
 }
 
-/// A plain loop over environments, as one writes it.
+/// A plain loop over environments, as programs would write it.
 fn plain(blueprint: &Blueprint) -> Vec<Env> {
     let make = |seed: usize| {
         let mut env = blueprint.env().expect("available");
@@ -173,13 +173,13 @@ fn threads(name: &str, blueprint: &Blueprint) {
     );
 }
 
-/// Environments of the vectors whose steps are compared with those of one alone.
+/// Numbers of environments in the vectors whose steps are compared with those of a single environment.
 const CROWDS: [usize; 3] = [8, 64, 512];
-/// Courses of each, by turns, and steps of a course.
+/// Runs of each, in turn, and steps of a run.
 const COURSES: usize = 7;
 const COURSE: usize = 25;
 
-/// Both do the same work: a single environment also makes the steps of each environment of the vector, one after the other.
+/// Both do the same work: the single environment takes the steps of all environments of the vector, one after the other.
 fn crowd(name: &str, blueprint: &Blueprint) {
     for n in CROWDS {
         let mut many = vector_of(n, blueprint, 1);
@@ -288,7 +288,7 @@ fn nodes(name: &str, blueprint: &Blueprint) {
     );
 }
 
-/// Eyes with a lower rate, or drawn on request in every tenth step, against those drawn in each step.
+/// Eyes with a lower rate, or drawn on request in every tenth step, compared with eyes drawn in each step.
 fn rates(name: &str, config: &Config) {
     let rated = Config {
         vision_rate: Some(30.0),
@@ -306,7 +306,7 @@ fn rates(name: &str, config: &Config) {
     );
 }
 
-/// Both make the same steps; the actions do not depend on what is seen.
+/// Both take the same steps; the actions do not depend on the pictures.
 fn less(what: &str, config: &Config, other: Config) {
     let [mut every, mut some] = [config.clone(), other].map(|config| {
         let mut env = Env::new(config).expect("available");
@@ -380,7 +380,7 @@ fn memory(name: &str, blueprint: &Blueprint) {
     );
 }
 
-/// Measures memory in a process of its own.
+/// Measures memory in a separate process.
 fn memory_apart(filter: &str) {
     let program = std::env::current_exe().expect("this program has a path");
     let status = std::process::Command::new(program).arg(filter).status();

@@ -1,4 +1,4 @@
-//! Long runs and starts that make no sense, to show what the simulation withstands. Prints Markdown tables.
+//! Long runs and absurd starts, to show what the simulation withstands. Prints Markdown tables.
 //!
 //! ```sh
 //! cargo run --release --features rapier --example endurance -- steps 10000000   # over scenes, bodies, actuation models and engines
@@ -24,7 +24,7 @@ type Result<T> = std::result::Result<T, Box<dyn Error>>;
 
 /// Steps between two snapshots.
 const TWIN_EVERY: u64 = 1000;
-/// Steps that a twin makes.
+/// Steps that a twin takes.
 const TWIN_FOR: u64 = 10;
 /// Steps for which the kind of action is kept.
 const KIND_FOR: u64 = 250;
@@ -33,7 +33,7 @@ const SENSES_SHARE: u64 = 100;
 /// Steps, or starts, from one of the Rapier engine to the next.
 const RAPIER_STEPS: u64 = 200;
 const RAPIER_STARTS: u64 = 10;
-/// Starts between two that make sense.
+/// Absurd starts between two sensible ones.
 const SENSE_EVERY: u64 = 100;
 /// Greatest growth of memory in one row, kB.
 const GROWTH: u64 = 8192;
@@ -45,7 +45,7 @@ fn below(rng: &mut NumpyRng, n: usize) -> usize {
     (rng.uniform() * n as f64) as usize
 }
 
-/// Everything moves: without touch and eyes on each engine, and with them on the soft one.
+/// Everything that moves: without touch and eyes on each engine, and with them on the soft one.
 fn configurations() -> Vec<Config> {
     let mut out = Vec::new();
     for (engine, senses) in [
@@ -246,7 +246,7 @@ fn steps(all: u64, only: &str) -> Result<()> {
     Ok(())
 }
 
-/// Positions and velocities that make no sense.
+/// Absurd positions and velocities.
 fn absurd(rng: &mut NumpyRng, qpos: &mut [f64], qvel: &mut [f64]) {
     const FAR: [f64; 10] = [0.0, 1e-3, 0.1, 1.0, 3.0, 10.0, 1e3, 1e6, 1e11, 1e300];
     const FAST: [f64; 10] = [0.0, 1.0, 1e2, 1e3, 1e4, 1e5, 1e6, 1e9, 1e150, 1e300];

@@ -1,5 +1,5 @@
-//! Measures what MIMo can do at each age by both settings of `strength`, as the tables of `docs/guide/infant.md` show it. Factors of groups
-//! of joints are keys, with which the ratios were calibrated.
+//! Measures what MIMo can do at each age under both settings of `strength`, for the tables in `docs/guide/infant.md`. Keys set factors for groups of
+//! joints; the ratios were calibrated with them.
 //!
 //! ```sh
 //! cargo run --release --example milestones                        # all milestones
@@ -16,7 +16,7 @@ use babybench::mimo::Version;
 /// Ages, months.
 const AGES: [f64; 11] = [0.0, 1.0, 2.0, 3.0, 3.5, 4.0, 6.0, 9.0, 12.0, 18.0, 24.0];
 
-/// A milestone: what it is, and how it is measured.
+/// A milestone: its description, and how it is measured.
 type Milestone = (&'static str, fn(&Config) -> f64);
 
 const MILESTONES: [Milestone; 4] = [

@@ -1,4 +1,5 @@
-//! MIMo in a Rapier world: he sits on its ground, and balls fall on him. Then it measures the cost of a step, by turns with his own scene.
+//! MIMo in a Rapier world: he sits on its ground, and balls fall on him. The example then measures the cost of a step, alternating with his own
+//! scene.
 //!
 //! ```sh
 //! cargo run --release --features rapier --example rapier_world

@@ -20,7 +20,7 @@ const POPULATION: usize = 48;
 const ELITE: usize = 8;
 /// Episodes in which a policy of a generation is tried, the same for all.
 const TRIALS: usize = 3;
-/// Episodes of the comparison with random actions: a round of all environments each.
+/// Number of episodes in the comparison with random actions; each runs in all environments.
 const ROUNDS: u64 = 4;
 /// Inputs of a torque: a constant, the way from the fingers to the ball, angles and velocities of the arm.
 const INPUTS: usize = 1 + 3 + JOINTS + JOINTS;
@@ -129,7 +129,7 @@ impl Arena {
         }
     }
 
-    /// Prints how often the ball is reached in separate episodes.
+    /// Prints how often he reaches the ball in separate episodes.
     fn compare(&mut self, what: &str, policy: Option<&[f64]>) -> Result<(), VectorError> {
         let policies = policy.map(|policy| vec![policy.to_vec(); POPULATION]);
         let (mut reached, mut steps) = (0, 0);

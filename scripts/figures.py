@@ -17,7 +17,7 @@ NUMBERS = {"twelve": 12, "fifteen": 15}
 
 
 def text(path: str) -> str:
-    """Returns a file with each run of white space as one space, so that quotes may go over the end of a line."""
+    """Returns a file's text with each run of white space reduced to one space, so that quotes may span lines."""
     return re.sub(r"\s+", " ", (ROOT / path).read_text("utf-8"))
 
 

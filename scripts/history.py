@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Keeps figures over time in docs/history.csv: instructions of a step, sizes of what is handed out, times of the tests.
+"""Keeps figures over time in docs/history.csv: instructions of a step, sizes of the released files, times of the tests.
 
     scripts/history.py measure        # prints the figures of the working tree
     scripts/history.py add [NOTE]     # appends them to docs/history.csv, and draws docs/history.svg
@@ -149,7 +149,7 @@ def history() -> list[Row]:
 
 
 def risen(before: Row, after: Row) -> list[str]:
-    """Names the sizes that have risen too much, and the instructions if the processors are of one kind."""
+    """Names the sizes that have risen too much, and the instructions if both processors are of the same kind."""
     same = before["processor"] == after["processor"]
     names = [name for name in COLUMNS if name in SIZES or (same and name.endswith("_kinstr"))]
     known = [name for name in names if before.get(name) and after.get(name)]

@@ -71,7 +71,7 @@ class Tree:
         return len(set(tomllib.loads(self.text("Cargo.toml"))["features"]) - {"default"})
 
     def methods(self, name: str) -> tuple[int, int]:
-        """Counts the public methods of a type, and the files that they are in."""
+        """Counts the public methods of a type, and the files that define them."""
         found: dict[str, set[str]] = collections.defaultdict(set)
         for file in self.rust("src/"):
             for block in re.findall(
@@ -97,7 +97,7 @@ class Tree:
         return len(sizes), sum(sizes)
 
     def repeated(self) -> int:
-        """Counts the names of types that more than one type has."""
+        """Counts the names that more than one type has."""
         declared = r"^(?:pub(?:\([a-z: ]*\))? )?(?:struct|enum|trait|type) ([A-Z]\w*)"
         names = collections.Counter(
             name for file in self.rust("src/", "engine/") for name in re.findall(declared, self.text(file), re.M)

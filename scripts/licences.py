@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Checks licences, versions and sources of all dependencies against deny.toml, as cargo-deny does, which takes minutes to build.
+"""Checks licences, versions and sources of all dependencies against deny.toml, like cargo-deny, which takes minutes to build.
 
     scripts/licences.py
 
@@ -19,7 +19,7 @@ REGISTRY = "registry+https://github.com/rust-lang/crates.io-index"
 
 
 def is_allowed(expression: str, allowed: set[str]) -> bool:
-    """Evaluates an SPDX expression: any side of OR, both sides of AND; `/` is an older OR."""
+    """Evaluates an SPDX expression: either side of OR, both sides of AND; `/` is an older form of OR."""
     tokens = re.findall(r"\(|\)|[^\s()]+", expression.replace("/", " OR "))
 
     def either() -> bool:

@@ -40,7 +40,7 @@ def code(before: str, language: str, mark: str, text: str) -> str | None:
 
 
 def words(text: str) -> str:
-    """Returns text for a cell: links and pictures of the documentation lead nowhere in a notebook."""
+    """Returns text for a cell, without the links and pictures of the documentation, which lead nowhere in a notebook."""
     text = re.sub(r"^!\[[^\]]*\]\([^)]*\)\n?", "", text, flags=re.MULTILINE)
     return re.sub(r"\[([^\]]*)\]\((?!https?:)[^)]*\)", r"\1", text)
 

@@ -44,7 +44,7 @@ def is_prose(text: str) -> bool:
 
 
 def markdown() -> Iterator[Line]:
-    """Yields the sentences and table rows of Markdown outside of code blocks."""
+    """Yields the sentences and table rows of Markdown outside code blocks."""
     for path, text in files(".md"):
         block: list[str] = []
         start, fenced = 0, False

@@ -48,7 +48,7 @@ def number(x, digits):
 
 
 def icosphere(times):
-    """Points and faces of a unit sphere: an icosahedron whose faces are divided into four this many times."""
+    """Points and faces of a unit sphere: an icosahedron whose faces are repeatedly divided into four, this many times."""
     golden = (1 + sqrt(5)) / 2
     corners = [(s, t * golden, 0.0) for s in (-1, 1) for t in (-1, 1)]
     corners = [at[k:] + at[:k] for k in range(3) for at in corners]
@@ -84,7 +84,7 @@ def icosphere(times):
 
 
 def bent(times, shape):
-    """A sphere whose points `shape` moves."""
+    """A sphere whose points are moved by `shape`."""
     mesh = Mesh()
     places, faces = icosphere(times)
     for at in places:

@@ -47,7 +47,7 @@ pub(crate) fn lines<T: Serialize>(values: impl IntoIterator<Item = T>) -> io::Re
     Ok(out)
 }
 
-/// Returns a value as JSON without a line break, for types whose `Serialize` refuses nothing.
+/// Returns a value as JSON without a line break, for types whose `Serialize` cannot fail.
 pub(crate) fn text(value: &impl Serialize) -> String {
     let mut out = Vec::new();
     let written = line(&mut out, value).map(|()| out.pop());

@@ -121,7 +121,7 @@ pub mod sensors;
 pub mod spaces;
 pub mod vector;
 
-/// The engine, which is the crate [mjcf-sim](https://docs.rs/mjcf-sim): it knows no infant.
+/// The engine, which is the crate [mjcf-sim](https://docs.rs/mjcf-sim) and knows nothing of infants.
 #[cfg(not(feature = "eval"))]
 pub use mjcf_sim::formats;
 #[cfg(feature = "rapier")]

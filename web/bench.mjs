@@ -1,4 +1,4 @@
-// Measures how much slower a browser and this Node are than the native library, by turns: `node web/bench.mjs [TURNS]`. Build first:
+// Measures how much slower a browser and this Node are than the native library, in turn: `node web/bench.mjs [TURNS]`. Build first:
 // `web/build.sh package` and `cargo build --release --example pace`.
 import { execFileSync } from "node:child_process";
 import { join } from "node:path";

@@ -43,7 +43,7 @@ pub fn pair(
     println!("{name:60} {median:.3} times ({low:.3} .. {high:.3}); {one:8.1} and {other:8.1} us per step");
 }
 
-/// Returns the CPU time of this thread, s, if the system reports it, or otherwise the time.
+/// Returns the CPU time of this thread, s, if the system reports it, and the wall time otherwise.
 pub fn cpu_time() -> f64 {
     #[cfg(any(target_os = "linux", target_os = "macos"))]
     return seconds(rustix::time::ClockId::ThreadCPUTime);
@@ -51,7 +51,7 @@ pub fn cpu_time() -> f64 {
     return wall_time();
 }
 
-/// Returns the CPU time of all threads of the process, s, if the system reports it, or otherwise the time.
+/// Returns the CPU time of all threads of the process, s, if the system reports it, and the wall time otherwise.
 pub fn process_time() -> f64 {
     #[cfg(any(target_os = "linux", target_os = "macos"))]
     return seconds(rustix::time::ClockId::ProcessCPUTime);
@@ -67,7 +67,7 @@ fn seconds(clock: rustix::time::ClockId) -> f64 {
     time.tv_sec as f64 + 1e-9 * time.tv_nsec as f64
 }
 
-/// Returns what time it is, s, since the first call.
+/// Returns the time since the first call, s.
 pub fn wall_time() -> f64 {
     static START: std::sync::OnceLock<Instant> = std::sync::OnceLock::new();
     START.get_or_init(Instant::now).elapsed().as_secs_f64()

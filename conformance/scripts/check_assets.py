@@ -38,7 +38,7 @@ NOT_COMPARED = {"tex_data", "paths", "npaths", "tex_pathadr", "nbuffer", "signat
 
 
 def document(version, scene, kind, groups):
-    """The top document of one combination, to be placed beside the files it includes."""
+    """The top document of one combination, which belongs next to the files it includes."""
     files = ["base.xml", f"meta_v{version}.xml"]
     files += [f"{kind}_{g}_v{version}.xml" if g in BY_VERSION else f"{kind}_{g}.xml" for g in GROUPS if g in groups]
     files += [] if scene == "base" else [f"{scene}.xml"]
@@ -50,7 +50,7 @@ def document(version, scene, kind, groups):
 
 
 def slim_copy(source, target):
-    """Copies `source`/babybench/*.xml to `target` and puts a 4x4 px image wherever one of the files names a PNG."""
+    """Copies `source`/babybench/*.xml to `target` and puts a 4x4 px image wherever a file names a PNG."""
     directory = target / "babybench"
     directory.mkdir(parents=True)
     for xml in sorted((source / "babybench").glob("*.xml")):

@@ -5,7 +5,7 @@ usage: python contact_pairs.py [--poses N] [--seed S] [--out FILE]      (needs m
 N poses for each of the 20 pairs of shapes (default 500, the committed file); a larger FILE is read by the test in place
 of the committed one when BB_CONTACT_PAIRS names it.
 
-Kinds of poses, by turns: random orientation at a depth between 1e-6 and 1e-2 m, deep in each other, the same with a
+Kinds of poses, in turn: random orientation at a depth between 1e-6 and 1e-2 m, deep in each other, the same with a
 margin, axis-aligned on a grid (flush faces, kissing surfaces, shared edges), that pose turned as a whole, that pose with
 a slight tilt, stacked with a gap or overlap of some rounding errors, and the same centre.
 
@@ -84,7 +84,7 @@ class Pair:
             }[name]
 
     def place(self, pos, quat, margin=0.0):
-        """Contacts at a pose; the number of them."""
+        """Returns the contacts at a pose and their number."""
         self.data.mocap_pos[:] = pos
         self.data.mocap_quat[:] = quat
         self.model.pair_margin[0] = margin
@@ -160,7 +160,7 @@ class Pair:
         return pos, [quat[0], quat_mul(quat[1], tilt / np.linalg.norm(tilt))]
 
     def kissing_pose(self):
-        """Touching, to within some rounding errors."""
+        """Poses that touch to within a few rounding errors."""
         pos, quat = self.aligned_pose()
         length = np.linalg.norm(pos[1] - pos[0])
         u = (pos[1] - pos[0]) / length if length > 0 else np.array([0.0, 0.0, 1.0])
@@ -175,7 +175,7 @@ class Pair:
         return [pos, pos], [quat(), quat()]
 
     def pose(self, kind):
-        """Arranges a pose of a kind; its margin."""
+        """Arranges a pose of a kind; returns its margin."""
         if kind == "margin":
             pos, quat = [self.shallow_pose, self.deep_pose, self.turned_pose][self.rng.integers(3)]()
             margin = 2.0 ** -self.rng.integers(4, 12)

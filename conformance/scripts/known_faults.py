@@ -26,7 +26,7 @@ def loaded(mujoco, xml: str):
 
 
 def height_field_sides(mujoco) -> float:
-    """Share of 400 level rays at the sides of a height field that miss a side that they hit."""
+    """Share of 400 horizontal rays towards the sides of a height field that miss the side they should hit."""
     rng = np.random.default_rng(0)
     rows, columns = 4, 5
     heights = rng.random((rows, columns))
@@ -116,7 +116,7 @@ def mirrored_refused(mujoco) -> int:
 
 
 def mirrored_inside_out(mujoco) -> int:
-    """Whether the triangles of a mesh with a negative scale look inwards."""
+    """Whether the triangles of a mesh with a negative scale face inwards."""
     model, _ = loaded(mujoco, MIRRORED.format('inertia="legacy"'))
     corners, faces = np.asarray(model.mesh_vert, float), np.asarray(model.mesh_face)
     volume = sum(np.dot(corners[a], np.cross(corners[b], corners[c])) for a, b, c in faces)
@@ -134,7 +134,7 @@ def board(mujoco, depth: float):
 
 
 def box_depth(mujoco) -> float:
-    """Share of the depth of a box, 1 cm in a board, that its contacts lack."""
+    """Share of the depth of a box, 1 cm in a board, that is missing from its contacts."""
     found = board(mujoco, 0.01)
     return round(1 + float(found[0].dist) / 0.01, 6) if len(found) else 1.0
 

@@ -331,7 +331,7 @@ def eye(side, size):
 
 
 def cloth(side, size, colours, up):
-    """A sleeve or trouser leg around z: cloth on one end up to a cuff, skin beyond. `up`: cloth is at +z."""
+    """A sleeve or trouser leg around z: cloth at one end up to a cuff, skin beyond. `up`: cloth is at +z."""
     body, cuff, seam = colours
     d = directions(side, size)
     height = d[..., 2] / np.maximum(np.hypot(d[..., 0], d[..., 1]), 1e-9)

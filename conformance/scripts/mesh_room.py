@@ -121,7 +121,7 @@ def ball(radius=0.17):
 
 
 def gem():
-    """Points whose hull has large flat faces: no faces of its own."""
+    """Points without faces of their own, whose hull has large flat faces."""
     crown = [(0.1 * cos(pi * k / 3), 0.1 * sin(pi * k / 3), 0.1) for k in range(6)]
     girdle = [(0.17 * cos(pi * (k + 0.5) / 3), 0.17 * sin(pi * (k + 0.5) / 3), 0.03) for k in range(6)]
     return crown + girdle + [(0, 0, -0.15)]

@@ -1,4 +1,4 @@
-"""Writes the small ONNX models in tests/data/policies, with which policies from files are tested.
+"""Writes the small ONNX models in tests/data/policies, which test policies from files.
 
     pip install onnx numpy && python conformance/scripts/onnx_models.py
 
@@ -42,7 +42,7 @@ def bias(columns):
 
 
 def network(name, batch, observation="observation", angles=ANGLES, actions=ACTIONS):
-    """tanh((observation, vestibular) W + b): two inputs, as of a policy for several senses."""
+    """tanh((observation, vestibular) W + b): two inputs, like a policy for several senses."""
     write(
         name,
         [
@@ -107,7 +107,7 @@ def flat():
 
 
 def large():
-    """Actions outside of every action space: 10 and -10."""
+    """Actions outside every action space: 10 and -10."""
     one = np.where(np.arange(ACTIONS) % 2 == 0, 10, -10).astype(np.float32)
     write(
         "large",

@@ -118,7 +118,7 @@ reset_warm reset_activity reset_desired_goal reset_ball reset_set_qpos reset_act
 
 
 def tasks(recorded, out):
-    """Recordings of tasks: states, rewards and goals, and where their episodes start."""
+    """Recordings of tasks: states, rewards, goals, and the starts of episodes."""
     out.mkdir(parents=True, exist_ok=True)
     for path in sorted(recorded.glob("*.npz")):
         with np.load(path) as npz:

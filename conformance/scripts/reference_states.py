@@ -73,7 +73,7 @@ def settled(model):
 
 
 def states(model, data, rng, detailed):
-    """Walks on from `data` with random ctrl and evaluates the states passed, the first `detailed` with poses and qM."""
+    """Steps on from `data` with random ctrl and evaluates the states on the way, the first `detailed` with poses and qM."""
     out = {}
     for step in range(1, STATE_STEPS[-1] + 1):
         if step % 10 == 1:

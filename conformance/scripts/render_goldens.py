@@ -1,4 +1,4 @@
-"""Writes conformance/data/render_{base,crib,cubes}.npz: what MuJoCo 3.3.0 draws of the models in assets/, by OSMesa.
+"""Writes conformance/data/render_{base,crib,cubes}.npz: what MuJoCo 3.3.0 draws of the models in assets/ with OSMesa.
 
     MUJOCO_GL=osmesa python render_goldens.py [--assets DIR] [--out DIR] [--poses DIR] [--time] [--only small]
 

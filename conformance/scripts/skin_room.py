@@ -49,7 +49,7 @@ LENGTH, AROUND, ALONG = 0.2, 10, 9
 
 
 def surface(flag):
-    """Vertices, faces and texture coordinates of a tube, or of a sheet that one sees from one side."""
+    """Vertices, faces and texture coordinates of a tube, or of a sheet that is visible from one side."""
     places, faces, coordinates = [], [], []
     for k in range(ALONG + 1):
         for l in range(AROUND + 1):

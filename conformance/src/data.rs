@@ -1,4 +1,4 @@
-//! The data of `conformance/data`, whose README says what each file is.
+//! The data in `conformance/data`, whose README describes each file.
 
 use std::io::Read as _;
 use std::path::{Path, PathBuf};
@@ -30,7 +30,7 @@ pub fn json(name: &str) -> Value {
     serde_json::from_str(&text).unwrap_or_else(|e| panic!("{name}: {e}"))
 }
 
-/// Returns the names of the files of a folder that end so, without the ending, sorted.
+/// Returns the names of the files in a folder with an ending, without it, sorted.
 pub fn names(folder: &str, ending: &str) -> Vec<String> {
     let files = std::fs::read_dir(path(folder)).unwrap_or_else(|e| panic!("{folder}: {e}"));
     let names = files.filter_map(|file| file.ok()?.file_name().into_string().ok());

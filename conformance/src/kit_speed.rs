@@ -35,8 +35,7 @@ struct Task {
 }
 
 impl Task {
-    /// Returns the example configurations. Ours follows the Python code wherever that departs from the API page, so that
-    /// both do the same work.
+    /// Returns the example configurations. Ours follows the Python code wherever it departs from the API page, so that both do the same work.
     fn examples() -> impl Iterator<Item = Self> {
         example_configs().into_iter().map(|(name, config)| Self {
             name,

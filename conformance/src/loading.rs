@@ -1,4 +1,4 @@
-//! A comparison of how MuJoCo and our loader take the same document.
+//! A comparison of MuJoCo and our loader on the same document.
 
 use babybench::assets::AssetSource;
 use babybench::mjcf_loader::{ErrorKind, LoadError, load_str};
@@ -32,9 +32,9 @@ pub enum Outcome {
     Equal,
     /// Both reject it.
     Rejected,
-    /// Ours rejects what MuJoCo takes, for a reason of [`deliberate`].
+    /// Ours rejects what MuJoCo accepts, for a reason in [`deliberate`].
     Stricter(&'static str),
-    /// A difference that should not be.
+    /// An unexpected difference.
     Fault(String),
 }
 
@@ -90,7 +90,7 @@ pub fn deliberate(error: &LoadError) -> Option<&'static str> {
     }
 }
 
-/// Loads the document `main` of `files` with both, and compares the compiled models.
+/// Loads the document `main` of `files` on both sides and compares the compiled models.
 pub fn compare(api: &'static Mujoco, main: &str, files: &[(&str, &str)], assets: &dyn AssetSource) -> Outcome {
     let text = files.iter().find(|f| f.0 == main).map_or("", |f| f.1);
     let bytes: Vec<(&str, &[u8])> = files.iter().map(|(name, text)| (*name, text.as_bytes())).collect();

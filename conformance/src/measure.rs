@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Deserializer, Serialize};
 
-/// Reads a number of JSON, which has none that are not finite: they are written as `null`, and read as not a number.
+/// Reads a number from JSON. JSON has no numbers that are not finite: they are written as `null` and read as NaN.
 pub fn or_nan<'de, D: Deserializer<'de>>(deserializer: D) -> Result<f64, D::Error> {
     Ok(Option::deserialize(deserializer)?.unwrap_or(f64::NAN))
 }
@@ -24,7 +24,7 @@ pub struct Summary {
 }
 
 impl Summary {
-    /// Summarises `values`; an error that is not a number counts as infinite.
+    /// Summarises `values`; NaN counts as infinite.
     pub fn new(values: impl IntoIterator<Item = f64>) -> Self {
         let mut v: Vec<f64> = values
             .into_iter()

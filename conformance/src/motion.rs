@@ -49,7 +49,7 @@ impl Drift {
     }
 }
 
-/// Takes 1000 steps without contacts, compared at the recorded steps; `run` is `cf` or, with locked joints, `cfl`.
+/// Takes 1000 steps without contacts and compares the recorded ones; `run` is `cf` or, with locked joints, `cfl`.
 pub fn contact_free(reference: &Reference, run: &str) -> Vec<Drift> {
     let mut engine = reference.engine(true);
     let mut state = engine.new_state();
@@ -73,7 +73,7 @@ pub fn contact_free(reference: &Reference, run: &str) -> Vec<Drift> {
     drift
 }
 
-/// Takes 100 steps from `qpos0` with contacts and ctrl 0, compared on the way and at the end.
+/// Takes 100 steps from `qpos0` with contacts and ctrl 0, and compares on the way and at the end.
 pub fn settling(reference: &Reference) -> Vec<Drift> {
     let mut engine = reference.engine(false);
     let mut state = engine.new_state();

@@ -126,11 +126,11 @@ fn rows(python: &Path) -> Result<Vec<Row>, String> {
 struct Spent {
     /// CPU time of one thread.
     cpu: f64,
-    /// By the clock, with one thread and with two.
+    /// Wall time, with one thread and with two.
     wall: [f64; 2],
 }
 
-/// Measures what our pictures of a state cost.
+/// Measures the cost of our pictures of a state.
 fn spent(env: &mut Env, qpos: &[f64], eyes: bool) -> Result<Spent, String> {
     let qvel = vec![0.0; env.state().qvel.len()];
     env.by_hand().reset_to(qpos, &qvel).map_err(|e| e.to_string())?;

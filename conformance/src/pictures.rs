@@ -11,7 +11,7 @@ pub struct Difference {
     sum: u64,
     /// The largest.
     pub max: u8,
-    /// Pixels off by more than 2, and by more than 4, in some colour.
+    /// Number of pixels off by more than 2, and by more than 4, in some colour.
     off: [usize; 2],
     ssim: Vec<f64>,
 }
@@ -32,7 +32,7 @@ impl Difference {
         self.ssim.push(ssim(ours, theirs, width));
     }
 
-    /// Adds what another set of pictures has.
+    /// Adds the differences of another set of pictures.
     pub fn merge(&mut self, other: &Self) {
         self.values += other.values;
         self.sum += other.sum;

@@ -1,4 +1,4 @@
-//! Plots of the report. Colours are legible on light and on dark ground, which shows through.
+//! Plots of the report. Colours are legible on light and on dark backgrounds, which show through.
 
 use std::path::Path;
 

@@ -24,7 +24,7 @@ const DONE: &str = "done ";
 pub enum Ran<T> {
     /// The result.
     Done(T),
-    /// MuJoCo fell at it.
+    /// MuJoCo crashed on it.
     Fell,
 }
 
@@ -32,7 +32,7 @@ pub enum Ran<T> {
 /// [`in_child`] for a range.
 ///
 /// # Errors
-/// A process cannot be started, or ends in another way than by MuJoCo's fault.
+/// A process cannot be started, or ends for a reason other than MuJoCo's fault.
 pub fn run<T: DeserializeOwned + Send>(
     count: u64,
     length: u64,
@@ -49,7 +49,7 @@ pub fn ranges(count: u64, length: u64) -> Vec<Range<u64>> {
     starts.map(|k| k..count.min(k + length)).collect()
 }
 
-/// Runs the documents of a range, and continues after those at which MuJoCo crashes.
+/// Runs the documents of a range, and continues after those on which MuJoCo crashes.
 fn all_of<T: DeserializeOwned>(
     mut range: Range<u64>,
     child: &(impl Fn(&Range<u64>) -> Command + Sync),
@@ -84,7 +84,7 @@ fn all_of<T: DeserializeOwned>(
     Ok(all)
 }
 
-/// Returns whether a process ended by an invalid access to memory, or because its allocator found the damage of one.
+/// Returns whether a process ended by an invalid access to memory, or because its allocator detected one.
 fn fell(output: &Output) -> bool {
     #[cfg(unix)]
     {
@@ -128,7 +128,7 @@ pub fn in_child<T: Serialize>(range: Range<u64>, mut one: impl FnMut(u64) -> T) 
 mod tests {
     use super::*;
 
-    /// A process that answers ten times the number of each document, and ends at the third one as `end` says.
+    /// A process that answers ten times the number of each document, and ends at the third one as `end` specifies.
     fn child(range: &Range<u64>, end: &str) -> Command {
         let one = |k: u64| match k {
             3 => format!("echo at 3; {end};"),

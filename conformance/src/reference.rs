@@ -1,5 +1,4 @@
-//! MuJoCo's results for the six models, in `data/reference_*.npz`; `scripts/reference_states.py` writes them and says
-//! what is in them.
+//! MuJoCo's results for the six models, in `data/reference_*.npz`; `scripts/reference_states.py` writes and describes them.
 
 use std::sync::Arc;
 

@@ -29,10 +29,10 @@ State: over the recorded states. Relative errors are those of the largest value.
 
 ";
 
-/// Steps after which an open-loop replay is looked at.
+/// Steps after which an open-loop replay is evaluated.
 const OPEN_LOOP: [usize; 3] = [30, 100, 300];
 
-/// Steps after which a live rollout is looked at.
+/// Steps after which a live rollout is evaluated.
 const ROLLOUT: [usize; 4] = [10, 30, 100, 300];
 
 struct Row {
@@ -41,7 +41,7 @@ struct Row {
     engine: String,
     /// p50, p90 and max.
     figures: [Option<f64>; 3],
-    /// The same of MuJoCo against itself.
+    /// The same for MuJoCo against itself.
     floor: [Option<f64>; 3],
 }
 
@@ -94,7 +94,7 @@ fn three(s: Summary) -> [Option<f64>; 3] {
     [Some(s.p50), Some(s.p90), Some(s.max)]
 }
 
-/// Writes the table and how to read it, in Markdown.
+/// Writes the table, with an explanation, as Markdown.
 ///
 /// Without MuJoCo or the recordings beside the repository, the table contains what the rest yields and says what is
 /// missing. Plots go to the folder `plots`.

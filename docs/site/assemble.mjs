@@ -7,7 +7,7 @@ import { fileURLToPath } from "node:url";
 const HERE = dirname(fileURLToPath(import.meta.url));
 const ROOT = resolve(HERE, "../..");
 
-/** Pages outside of `docs`, by their place on the site. */
+/** Pages outside `docs`, by their place on the site. */
 const ELSEWHERE = {
   "python/README.md": "python/index.md",
   "python/docs/from-the-kit.md": "python/from-the-kit.md",
@@ -28,7 +28,7 @@ const ELSEWHERE = {
   "changes/README.md": "project/fragments.md",
   "docs/adding.md": "project/adding.md",
 };
-/** Pages of `docs` that are not in a folder of it. */
+/** Pages directly in `docs`, not in one of its folders. */
 const RESULTS = "results/";
 
 /** The Markdown of `docs`, and where each page goes. */

@@ -3,8 +3,8 @@
 use mjcf_sim_physics::{Batch, BatchError, State};
 
 /// Steps every state of a batch `steps` times, as [`Batch::rollout`] does, on at most `threads` threads and no more than the machine has
-/// cores. It starts them and waits for them. They call `control` at the same time. The bits do not depend on their number. In WebAssembly the
-/// caller steps all states.
+/// cores. It starts the threads and waits for them. They call `control` concurrently. The bits do not depend on the number of threads. In WebAssembly
+/// the caller steps all states.
 ///
 /// ```
 /// use mjcf_sim::physics::{Batch, SoftOptions};

@@ -106,7 +106,7 @@ impl fmt::Debug for Simulation {
 
 impl Simulation {
     /// Loads an MJCF document with the default [`Limits`](crate::Limits). Files that it names start at its folder, as in MuJoCo, and may lie
-    /// above it (`../`) or anywhere (absolute paths). For documents of strangers use [`DirAssets`](crate::assets::DirAssets), which stays
+    /// above it (`../`) or anywhere (absolute paths). For untrusted documents, use [`DirAssets`](crate::assets::DirAssets), which stays
     /// within its folder, with [`mjcf_loader::load`](crate::mjcf_loader::load()) and [`Simulation::new`].
     ///
     /// # Errors
@@ -119,7 +119,7 @@ impl Simulation {
         Ok(Self::new(Arc::new(model), Arc::new(assets)))
     }
 
-    /// Loads an MJCF document from text with the default [`Limits`](crate::Limits); it has no other files. [`Simulation::new`] shows one with
+    /// Loads an MJCF document from text with the default [`Limits`](crate::Limits); it has no other files. [`Simulation::new`] has an example with
     /// meshes in memory.
     ///
     /// # Errors
@@ -166,13 +166,13 @@ impl Simulation {
         simulation
     }
 
-    /// Computes the poses, sensors and contacts of a state that has just begun, which a picture may show before the first step.
+    /// Computes the poses, sensors and contacts of a new state, which may be drawn before the first step.
     fn settle(&mut self) {
         // an error is that of the first step, too, which returns it
         let _ = self.engine.forward(&mut self.state);
     }
 
-    /// Returns the engine, for what it computes on request: [`full_m`](crate::physics::Engine::full_m),
+    /// Returns the engine, for the quantities that it computes on request: [`full_m`](crate::physics::Engine::full_m),
     /// [`efc_j`](crate::physics::Engine::efc_j).
     pub fn engine(&self) -> &SoftEngine {
         &self.engine
@@ -260,7 +260,7 @@ impl Simulation {
         Ok(ray(self.model(), &self.state, origin, direction, None)?)
     }
 
-    /// Sets the control of an actuator for the steps to come.
+    /// Sets the control of an actuator for the following steps.
     ///
     /// # Errors
     /// The model has no actuator with this name, or [`state`](Self::state) is of another model.
@@ -273,7 +273,7 @@ impl Simulation {
         Ok(())
     }
 
-    /// Draws the scene through a camera of the model, or from where MuJoCo's viewer stands at first: red, green and blue of each
+    /// Draws the scene from a camera of the model, or from the initial view of MuJoCo's viewer: red, green and blue of each
     /// pixel, rows from the top (height, width, 3).
     ///
     /// Poses are those of the last step or [`forward`](Self::forward). The first picture decodes the textures.

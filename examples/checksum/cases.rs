@@ -16,7 +16,7 @@ pub const EXAMPLES: [Case; 4] = [
     ("infant", include_str!("../../configs/config_infant.yml")),
 ];
 
-/// The tasks, and what the examples leave out: actuation models, the other engine, ways to touch and to see, ages.
+/// The tasks, and what the examples leave out: actuation models, the other engine, kinds of touch and vision, ages.
 pub const VARIANTS: [Case; 11] = [
     ("reach", include_str!("../../configs/config_reach.yml")),
     ("standup", include_str!("../../configs/config_standup.yml")),

@@ -1,4 +1,4 @@
-//! The lines that are printed, and what computes each.
+//! The printed lines, and how each is computed.
 
 use crate::cases::{Case, EXAMPLES, VARIANTS};
 use crate::sums::{self, Sum};
@@ -60,7 +60,7 @@ impl Job {
         }
     }
 
-    /// Computes the line. Vectors and eyes have `threads`; a snapshot is taken, or is the one that is given.
+    /// Computes the line. Vectors and eyes use `threads`; a snapshot is the given one, or a new one.
     pub fn line(&self, threads: usize, taken: Option<Vec<u8>>) -> Result<String, String> {
         let (name, steps) = (self.case.0, self.steps);
         let (what, sum) = match self.kind {

@@ -45,7 +45,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     Ok(())
 }
 
-/// Computes lines, some at once.
+/// Computes lines, several at a time.
 fn lines(jobs: &[Job], threads: usize, at_once: usize) -> Result<Vec<String>, Box<dyn std::error::Error>> {
     let (next, lines) = (AtomicUsize::new(0), Mutex::new(vec![Ok(String::new()); jobs.len()]));
     std::thread::scope(|scope| {

@@ -22,7 +22,7 @@ fn answer(text: Result<String, String>) -> usize {
     bytes().len()
 }
 
-/// Allocates a buffer for a snapshot, and returns its address; with the length of an answer, that of the answer.
+/// Allocates a buffer for a snapshot and returns its address; for the length of an answer, returns the answer's address.
 #[unsafe(no_mangle)]
 pub extern "C" fn memory_of(length: usize) -> *mut u8 {
     let mut bytes = bytes();

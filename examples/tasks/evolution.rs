@@ -17,7 +17,7 @@ pub struct Evolution {
 }
 
 impl Evolution {
-    /// Starts from a mean. Of `size` candidates in each generation the better half makes the next one.
+    /// Starts from a mean. Of the `size` candidates of each generation, the better half determines the next.
     pub fn new(mean: Vec<f64>, step: f64, size: usize) -> Self {
         let half = size as f64 / 2.0;
         let weights = (1..=size / 2).map(|k| pxfm::f_log(half + 0.5) - pxfm::f_log(k as f64));

@@ -125,7 +125,7 @@ impl Plan {
         self.all_free(0.0, 120, 20, 4, 0.7);
     }
 
-    /// For each goal a posture, to which springs and dampers of the policy's own pull.
+    /// For each goal a posture, to which the policy's own springs and dampers pull.
     fn self_body(&mut self, drives: &[Drive], env: &Env) -> Result<(), Box<dyn std::error::Error>> {
         self.shaping = 500.0;
         self.fingers = env.model().body("right_fingers");
@@ -161,7 +161,7 @@ impl Plan {
         Ok(())
     }
 
-    /// Every number of the action depends on its own joint, and on what all have in common.
+    /// Every number of the action depends on its own joint and on the shared features.
     fn postures(&mut self, drives: &[Drive], common: &[Feature], generations: usize, size: usize, trials: usize) {
         let design = &mut self.design;
         let mut features = vec![design.feature(Feature::one())];
@@ -177,8 +177,8 @@ impl Plan {
     }
 }
 
-/// Returns how far he has turned, -1 to 1, and in which direction he feels his weight, m/s^2 times 0.1: what brought him onto his side does
-/// not bring him onto his belly.
+/// Returns how far he has turned, -1 to 1, and in which direction he feels his weight, m/s^2 times 0.1. The movement that brings him onto his side
+/// does not bring him onto his belly.
 fn turned() -> Vec<Feature> {
     let way = Feature {
         offset: -1.0,
@@ -188,7 +188,7 @@ fn turned() -> Vec<Feature> {
     vec![way, weight(0), weight(1), weight(2)]
 }
 
-/// Finds the joint of each number of an action; muscles have one block of numbers after another.
+/// Finds the joint of each number of an action; muscles have two blocks of numbers, one after the other.
 fn drives(env: &Env) -> Result<Vec<Drive>, Box<dyn std::error::Error>> {
     let (model, actuators) = (env.model(), env.blueprint().actuation().actuators());
     let senses = env.senses().proprioception();

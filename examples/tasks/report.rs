@@ -1,4 +1,4 @@
-//! A report on the policies of a folder, compared with policies that do not learn: tables and learning curves.
+//! A report that compares the policies of a folder with policies that do not learn: tables and learning curves.
 
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
@@ -12,7 +12,7 @@ use babybench::{Blueprint, Config, Env};
 use crate::Error;
 use crate::plans::TASKS;
 
-/// Episodes of each policy; their seeds are 0, 1, ... Training has others.
+/// Number of episodes of each policy; their seeds are 0, 1, ..., which training does not use.
 const EPISODES: u64 = 20;
 /// Size of a panel, and of the margins of its curve: left, top, right, bottom.
 const PANEL: [f64; 2] = [300.0, 190.0];
@@ -23,7 +23,7 @@ const STYLE: &str = "text{font:12px Helvetica,Arial,sans-serif;fill:#5c6675}.tit
     .grid{stroke:#e2e3e6}.all{fill:none;stroke:#5c6675;stroke-opacity:.5;stroke-width:1.2}.mean{fill:none;stroke:#2e86de;stroke-width:2}\
     .random{stroke:#e4572e;stroke-dasharray:5 4;stroke-width:1.4}";
 
-/// A policy of the folder: its task, the age that it was trained at, its file without an ending.
+/// A policy of the folder: its task, the age at which it was trained, its file name without the ending.
 struct Entry {
     behavior: Behavior,
     age: Option<f64>,

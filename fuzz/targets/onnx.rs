@@ -7,7 +7,7 @@ use babybench::sensors::EYES;
 use babybench::spaces::{BoxSpace, Dtype, ObservationSpace};
 use libfuzzer_sys::fuzz_target;
 
-/// Operators that make as much, or take as long, as a model computes: nothing is promised of those.
+/// Operators whose output size or duration the model computes, which are not limited.
 const GROW: [&str; 13] = [
     "ConstantOfShape", "ConvTranspose", "Expand", "EyeLike", "Loop", "OneHot", "Pad", "Range", "Resize", "Scan", "Tile", "TopK",
     "Upsample",
@@ -28,7 +28,7 @@ fn spaces() -> Vec<ObservationSpace> {
     ]
 }
 
-/// Returns whether bytes have a text in them.
+/// Returns whether bytes contain a text.
 fn has(data: &[u8], text: &str) -> bool {
     data.windows(text.len()).any(|window| window == text.as_bytes())
 }

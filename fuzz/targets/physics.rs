@@ -1,4 +1,4 @@
-//! Models to some steps of both engines: a step is an error or leaves finite numbers.
+//! Models that both engines step a few times: a step is an error or leaves finite numbers.
 #![no_main]
 
 use std::sync::Arc;
@@ -12,7 +12,7 @@ use libfuzzer_sys::fuzz_target;
 /// Larger models are skipped, because their cost hides that of others.
 const LARGE: usize = 40;
 
-/// Returns how many steps a model goes: most things happen in the first ones, so only one model in four goes far.
+/// Returns how many steps a model takes: most failures happen in the first ones, so only one model in four takes many.
 fn steps(data: &[u8]) -> usize {
     let sum = data.iter().fold(0usize, |sum, &byte| sum.wrapping_mul(31).wrapping_add(byte.into()));
     if (sum ^ sum >> 7) % 4 == 0 { 20 } else { 3 }

@@ -18,7 +18,7 @@ thread_local! {
     static SMALL: RefCell<Env> = RefCell::new(env::small());
 }
 
-/// Longer recordings are only read: their cost hides others.
+/// Longer recordings are only read, because their cost hides that of others.
 const LONG: usize = 2;
 
 /// Reads an archive as a recording of an environment, and perhaps replays it.

@@ -1,4 +1,4 @@
-//! Logs to a report: a folder with a training log and an evaluation log, which are separated by a zero byte, or records made
+//! Logs from which a report is made: a folder with a training log and an evaluation log, which are separated by a zero byte, or records made
 //! from numbers.
 #![no_main]
 

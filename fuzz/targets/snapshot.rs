@@ -41,7 +41,7 @@ fn changed(data: &[u8], snapshot: &Snapshot) -> Vec<u8> {
     bytes
 }
 
-/// Restores bytes, takes some steps from there, and comes back.
+/// Restores bytes, takes some steps, and restores the earlier state.
 fn check(env: &mut Env, make: impl FnOnce(&Snapshot) -> Vec<u8>, steps: usize) {
     let before = env.snapshot();
     let Ok(snapshot) = Snapshot::from_bytes(make(&before)) else { return };

@@ -216,13 +216,13 @@ class Env:
     def set_state(self, qpos: npt.ArrayLike, qvel: npt.ArrayLike) -> dict[str, _Array]:
         """Moves the scene to positions (nq) and velocities (nv) in the middle of an episode and computes everything."""
     def set_mocap(self, body: str, pos: Sequence[float], quat: Sequence[float]) -> None:
-        """Moves a body with ``mocap="true"`` to a position (m) and an orientation (w, x, y, z), from the next step on."""
+        """Moves a body with ``mocap="true"`` to a position (m) and an orientation (w, x, y, z), from the next step."""
     def refresh(self) -> dict[str, _Array]:
         """Computes poses, contacts, forces and senses of the current state, without advancing."""
     def step(self, action: npt.ArrayLike) -> tuple[dict[str, _Array], float, bool, bool]:
         """Applies an action; returns observation, reward, terminated and truncated."""
     def run(self, actions: npt.ArrayLike) -> None:
-        """Applies actions, (K, action size), one after the other, and returns nothing: to replay, and to time the core."""
+        """Applies actions, (K, action size), one after the other, and returns nothing: for replays and for timing the core."""
     def observation(self) -> dict[str, _Array]:
         """Returns the observation of the last reset, step or :meth:`refresh`."""
     def eyes(self) -> dict[str, _Array]:
@@ -248,7 +248,7 @@ class Env:
         """Frees the environment. Later calls other than ``close`` and ``closed`` raise ``RuntimeError``."""
     @property
     def closed(self) -> bool:
-        """Whether it was closed."""
+        """Whether :meth:`close` was called."""
     @property
     def ready(self) -> bool:
         """Whether a step may follow: there was a reset, and nothing has diverged since."""
@@ -311,7 +311,7 @@ class Env:
     def model_array(self, name: str) -> _Array:
         """Returns an array of the model by MuJoCo's name, with all changes, or an option: ``opt.gravity``."""
     def change_model(self, changes: dict[str, _Array]) -> None:
-        """Changes numbers of the model from the next step on; takes whole arrays."""
+        """Changes numbers of the model from the next step; takes whole arrays."""
     def set_age(self, age: float | None) -> dict[str, Any]:
         """Sets MIMo's age, months; returns the configuration. The next call is a reset."""
     @property
@@ -580,7 +580,7 @@ class PhysicsRenderer:
 
 @final
 class VectorEnv:
-    """Many environments at once, on threads, with arrays over them.
+    """Many environments at once, on threads, with arrays that have one row each.
 
     Resets, steps and :meth:`recv` always return the same read-only arrays, which the next call overwrites; with ``copy`` they
     return new arrays.
@@ -633,12 +633,12 @@ class VectorEnv:
         """Ends the threads and frees the environments."""
     @property
     def closed(self) -> bool:
-        """Whether it was closed."""
+        """Whether :meth:`close` was called."""
     @property
     def flags(self) -> list[_Array]:
         """Rewards, terminated, truncated of the last step (N)."""
     def infos(self) -> dict[str, _Array]:
-        """Returns new arrays with a row for each of the last rows.
+        """Returns the last rows in new arrays.
 
         ``steps`` (N); ``touches`` (N, 2, geoms), which geoms the right and the left palm have touched, 1 or 0;
         ``regards`` (N, 4), how often hands were in view, with ``page_regards`` and ``kit_regards``, counted by either rule;
@@ -690,7 +690,7 @@ class VectorEnv:
     def model_array(self, env: int, name: str) -> _Array:
         """Returns an array of the model by MuJoCo's name, with all changes, or an option: ``opt.gravity``."""
     def change_model(self, env: int, changes: dict[str, _Array]) -> None:
-        """Changes numbers of the model from the next step on; takes whole arrays."""
+        """Changes numbers of the model from the next step; takes whole arrays."""
     def set_age(self, env: int, age: float | None) -> dict[str, Any]:
         """Sets the age of one environment's MIMo, months; returns its configuration."""
     def model_changes(self, env: int) -> dict[str, _Array]:
@@ -791,7 +791,7 @@ def model_columns(env: Env) -> dict[str, _Array]:
     """Returns new arrays of the look of an environment's model, and of its equalities and keyframes."""
 
 def paint(env: Env, looks: Mapping[str, npt.ArrayLike]) -> None:
-    """Changes the look of an environment's model at any time: whole arrays by name, as :func:`model_columns` returns them."""
+    """Changes the look of an environment's model at any time: whole arrays by name, in the form of :func:`model_columns`."""
 
 def set_equalities(env: Env, active: Sequence[bool]) -> None:
     """Sets which equality constraints are active, now and in later episodes."""

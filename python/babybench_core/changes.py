@@ -188,7 +188,7 @@ def options_of(options: object, known: Sequence[str] = OPTIONS) -> Mapping[str, 
 
 
 def of_vector(name: str, wanted: Any, count: int, one: type) -> list[Any]:
-    """Returns an option for each environment of a vector: one value of a type for all, or a list with one for each.
+    """Returns one option per environment of a vector, from a single value for all or a list with one value each.
 
     Raises:
         TypeError: The value is neither.

@@ -382,7 +382,7 @@ class Env(SceneAccess, gymnasium.Env[Observation, npt.NDArray[Any]]):
     def set_mocap(
         self, body: Union[str, int], pos: Sequence[float], quat: Sequence[float] = (1.0, 0.0, 0.0, 0.0)
     ) -> None:
-        """Moves a body with ``mocap="true"`` to a position (world, m) and an orientation (w, x, y, z), from the next step on.
+        """Moves a body with ``mocap="true"`` to a position (world, m) and an orientation (w, x, y, z), from the next step.
 
         It stays there until it is moved again; a reset returns it to its pose in the document. Bodies of the key
         ``mocap_motion`` follow their paths instead.

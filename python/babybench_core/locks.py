@@ -25,7 +25,7 @@ def known(target: Union[str, int], blueprint: _native.Blueprint) -> Iterator[Non
 
 
 def within_limits(report: LockReport, angle: float, blueprint: _native.Blueprint) -> LockReport:
-    """Warns of joints that were locked beyond their limits, and returns the report."""
+    """Warns about joints that were locked beyond their limits, and returns the report."""
     if report["beyond_limits"]:
         joints, ranges = blueprint.model_names["joint"], blueprint.model_array("jnt_range")
         limits = {name: ranges[joints.index(name)] for name in report["beyond_limits"]}

@@ -111,7 +111,7 @@ class ParallelEnv(pettingzoo.ParallelEnv[str, Observation, npt.NDArray[np.float3
     def step(
         self, actions: Mapping[str, npt.NDArray[np.float32]]
     ) -> tuple[dict[str, Observation], dict[str, float], dict[str, bool], dict[str, bool], dict[str, Any]]:
-        """Applies an action of each infant. Only the learner needs one; the other infant otherwise keeps his last.
+        """Applies an action of each infant. Only the learner needs one; without one, the other infant keeps his last action.
 
         Raises:
             KeyError: There is no action of the learner, or there is one of an unknown agent.

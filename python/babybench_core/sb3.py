@@ -104,7 +104,7 @@ class VecEnv(BaseVecEnv):
     def _split(
         self, infos: dict[str, Any], dones: npt.NDArray[np.bool_], cut: npt.NDArray[np.bool_]
     ) -> list[dict[str, Any]]:
-        """Returns the information of each environment; of an episode that has ended, that of its end."""
+        """Returns the information of each environment; for an episode that has ended, the information at its end."""
         keys = [key for key in _KEYS if key in infos]
         split: list[dict[str, Any]] = [{key: infos[key][env] for key in keys} for env in range(self.num_envs)]
         for env in np.flatnonzero(dones):

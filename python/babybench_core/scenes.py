@@ -76,7 +76,7 @@ def _read_file(path: Path, examples: list[str]) -> dict[str, Any]:
 
 
 def blueprint(config: Mapping[str, object], assets: Optional[Union[str, os.PathLike[str]]] = None) -> Blueprint:
-    """Compiles a scene, or returns the one that environments of the same configuration use already.
+    """Compiles a scene, or returns the one that environments of the same configuration already use.
 
     A custom scene is compiled each time, because its files may have changed.
 

@@ -368,7 +368,7 @@ class VectorEnv(gymnasium.vector.VectorEnv):  # type: ignore[type-arg, unused-ig
         raise AttributeError(f"environments of a vector have no {name!r}; they have {known}")
 
     def set_attr(self, name: str, values: Any) -> None:
-        """Refuses: environments of a vector have no attributes that can change.
+        """Raises an error: environments of a vector have no attributes that can be set.
 
         Raises:
             AttributeError: Always.
@@ -417,7 +417,7 @@ class VectorEnv(gymnasium.vector.VectorEnv):  # type: ignore[type-arg, unused-ig
         return array if element is None else array[changes.rows_of(name, element, self._blueprints[env])]
 
     def change_model(self, env: int, model: changes.Changes) -> None:
-        """Changes numbers of the model of one environment from its next step on: see :meth:`babybench.Env.change_model`."""
+        """Changes numbers of the model of one environment from its next step: see :meth:`babybench.Env.change_model`."""
         present = functools.partial(self._core.model_array, env)
         self._core.change_model(env, changes.arrays(model, present, self._blueprints[env]))
 

@@ -43,7 +43,7 @@ def chooser(env: Env, policy: Policy) -> Callable[[Mapping[str, Any]], npt.Array
 
 
 class View:
-    """A page on which users see an environment, turn the camera, pull bodies by a spring, pause time or change its speed.
+    """A page on which users see an environment, turn the camera, pull bodies with a spring, and pause or change the speed.
 
     A program either steps the environment itself and calls :meth:`show` after each step, or lets :meth:`play` or :meth:`start` do
     both. Pictures are drawn when a browser asks for one; a view without an open page draws nothing. In a notebook a view

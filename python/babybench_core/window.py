@@ -1,4 +1,4 @@
-"""A window, by pygame: an environment in real time, with a camera that turns and a spring that pulls."""
+"""A window, made with pygame: an environment in real time, with a camera that turns and a spring that pulls."""
 
 from __future__ import annotations
 
@@ -178,7 +178,7 @@ class Window:
     # --- output ---
 
     def picture(self) -> npt.NDArray[np.uint8]:
-        """Returns what the window shows, (height, width, 3)."""
+        """Returns the contents of the window, (height, width, 3)."""
         shown: npt.NDArray[np.uint8] = self._pg.surfarray.array3d(self._screen).swapaxes(0, 1)
         return shown
 

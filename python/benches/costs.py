@@ -26,7 +26,7 @@ ROUNDS = 40
 def alternate(
     pieces: dict[str, Callable[[], None]], steps: int, clock: Callable[[], float], rounds: int
 ) -> dict[str, float]:
-    """Times pieces of work in turn, in s for each of ``steps``.
+    """Times pieces of work in turn, in seconds for each of ``steps``.
 
     Returns the median of CPU time; of wall time the least, as that of a busy machine is other programs' too.
     """
@@ -41,7 +41,7 @@ def alternate(
 
 
 def one_environment(example: str, rounds: int) -> None:
-    """Prints what a step costs in Rust, and as Gymnasium's step."""
+    """Prints the cost of a step in Rust, and that of Gymnasium's step."""
     steps = 100 if example == "self_touch" else 20
     config = scenes.read_config(example, max_episode_steps=10**9)
     core = _native.Env(scenes.blueprint(config))

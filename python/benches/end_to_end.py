@@ -1,4 +1,4 @@
-"""Whole runs of this package and of the starter kit by turns: a user's waiting time, from the start of Python on.
+"""Whole runs of this package and of the starter kit in turn: how long a user waits, from the start of Python on.
 
     python benches/end_to_end.py KIT --kit-python KIT_PYTHON
 
@@ -66,7 +66,7 @@ def listed(values: list[float]) -> str:
 
 
 def ratios(pairs: list[tuple[tuple[float, float, float], ...]], column: int) -> str:
-    """Writes how often the second of each pair goes into the first."""
+    """Writes the ratio of the first to the second number of each pair."""
     return ", ".join(f"{kit[column] / ours[column]:.1f}" for kit, ours in pairs)
 
 

@@ -14,7 +14,7 @@ class Env:
     """The interface that this script gives to the environments of all packages."""
 
     def __init__(self, reset: Callable[[], Any], step: Callable[[Any], Any], owner: Any, low: Any, high: Any) -> None:
-        """Takes what resets and steps it; ``owner`` is looked through for its model and state."""
+        """Takes the functions that reset and step it; ``owner`` is searched for its model and state."""
         self.reset, self.step, self.owner = reset, step, owner
         self.low, self.high = (np.clip(np.asarray(bound, np.float64), -1, 1) for bound in (low, high))
         self.halves = False
@@ -130,7 +130,7 @@ def myosuite() -> dict[str, Callable[[], Env]]:
 
 
 def robosuite() -> dict[str, Callable[[], Env]]:
-    """The environments that the package registers, with one Panda, or two where there are two arms."""
+    """The environments that the package registers, with one Panda, or two for tasks with two arms."""
     import robosuite
     from robosuite.environments.base import REGISTERED_ENVS
 

@@ -44,7 +44,7 @@ SIDES = ("theirs", "ours", "nudged")
 
 @contextlib.contextmanager
 def limited(seconds: int) -> Iterator[None]:
-    """Ends what takes too long."""
+    """Ends a run that takes too long."""
 
     def late(*_: Any) -> None:
         raise TimeoutError(f"more than {seconds} s of CPU time")
@@ -66,7 +66,7 @@ def _seeded(make: Callable[[], Env]) -> tuple[Env, np.random.Generator]:
 
 
 def record(make: Callable[[], Env], mujoco: Any, path: Path) -> dict[str, Any]:
-    """Runs an environment on MuJoCo, and writes what it saw."""
+    """Runs an environment on MuJoCo, and writes the results."""
     env, rng = _seeded(make)
     states, actions, seen, ends, spent = [], [], [], [], 0.0
     for _ in range(STEPS):
@@ -161,7 +161,7 @@ def one_package(package: str, side: str, folder: Path, part: str) -> None:
 
 
 def run(venvs: Path, folder: Path, packages: list[str], part: str, again: bool) -> None:
-    """Runs what has not run of the packages, each in its own virtual environment."""
+    """Runs the environments of packages that have not run yet, each package in its own virtual environment."""
     folder.mkdir(parents=True, exist_ok=True)
     own = Path(__file__).resolve()
     paths = os.pathsep.join(str(own.parents[1] / part) for part in (".", "kit"))
@@ -179,7 +179,7 @@ def run(venvs: Path, folder: Path, packages: list[str], part: str, again: bool) 
 
 
 def read(folder: Path, package: str) -> dict[str, dict[str, dict[str, Any]]]:
-    """Returns what is known of each environment, by name and side."""
+    """Returns what is known about each environment, by name and side."""
     found: dict[str, dict[str, dict[str, Any]]] = {}
     path = folder / f"{package}.jsonl"
     for line in path.read_text().splitlines() if path.exists() else ():
@@ -189,7 +189,7 @@ def read(folder: Path, package: str) -> dict[str, dict[str, dict[str, Any]]]:
 
 
 def _reason(error: str) -> str:
-    """Returns an error without what differs between environments."""
+    """Returns an error without the parts that differ between environments."""
     text = error.split("\n")[0].split(" (HINT")[0].split("', '")[0].replace("|", "/").strip("(\"' ")
     return text[:110]
 
@@ -240,7 +240,7 @@ def table(folder: Path, out: Path, speed: bool) -> None:
 
 
 def _markdown(head: list[str], rows: list[list[str]]) -> str:
-    """Returns a table, of the columns that have a heading."""
+    """Returns a table of the columns that have a heading."""
     lines = [head, ["---"] * len(head), *(row[: len(head)] for row in rows)]
     return "\n".join(f"| {' | '.join(line)} |" for line in lines)
 

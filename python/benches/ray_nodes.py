@@ -1,4 +1,4 @@
-"""Prints what Ray does with two nodes: actors of ``examples/ray_vectors.py`` on one and on both, and an iteration of RLlib's PPO.
+"""Measures Ray with two nodes: actors of ``examples/ray_vectors.py`` on one and on both, and an iteration of RLlib's PPO.
 
 Starts two nodes on this machine (``ray start``), each with a core of its own, and stops them.
 Needs ``pip install "ray[rllib]" torch``.

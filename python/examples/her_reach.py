@@ -1,4 +1,4 @@
-"""MIMo learns to reach by hindsight: SAC with hindsight experience replay from Stable-Baselines3, on a vector.
+"""MIMo learns to reach with hindsight: SAC with hindsight experience replay from Stable-Baselines3, on a vector.
 
 Needs stable-baselines3 and PyTorch: pip install "stable-baselines3>=2.3"
 

@@ -18,7 +18,7 @@ import babybench
 
 
 class Agent(nn.Module):
-    """A policy and a value, of proprioception and touch."""
+    """A policy and a value function of proprioception and touch."""
 
     def __init__(self, inputs: int, outputs: int) -> None:
         """Builds both networks."""
@@ -32,7 +32,7 @@ class Agent(nn.Module):
         self.log_std = nn.Parameter(torch.zeros(outputs))
 
     def policy(self, x: torch.Tensor) -> Normal:
-        """Returns how likely actions are."""
+        """Returns the distribution of actions."""
         return Normal(self.actor(x), self.log_std.exp())
 
 

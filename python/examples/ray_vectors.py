@@ -44,7 +44,7 @@ class Explorer:
         return self.shape
 
     def explore(self, policy: Floats, seeds: list[int], scale: float) -> Floats:
-        """Returns the returns of each direction, plus and minus, (directions, 2)."""
+        """Measures the returns of each direction, plus and minus, (directions, 2)."""
         deltas = np.stack([np.random.default_rng(seed).standard_normal(self.shape) for seed in seeds])
         tried = np.concatenate([policy + scale * deltas, policy - scale * deltas])
         observations, _ = self.envs.reset(seed=seeds[0])

@@ -65,7 +65,7 @@ class Body:
 
 
 class Posture(BasePolicy):
-    """Takes the best posture, holds it, and moves the wrists by turns; its state is the number of steps so far."""
+    """Takes the best posture, holds it, and moves the wrists in turn; its state is the number of steps so far."""
 
     def __init__(self, observation_space: Any, action_space: Any, lr_schedule: Any, body: Body) -> None:
         """Rests in the middle of all ranges."""
@@ -74,7 +74,7 @@ class Posture(BasePolicy):
         self.register_buffer("posture", torch.from_numpy((body.low + body.high) / 2))
 
     def drive(self, felt: np.ndarray, postures: np.ndarray, step: np.ndarray) -> np.ndarray:
-        """Returns the actions that take postures, and move a wrist where the time of a trial has come."""
+        """Returns the actions that take postures, and move a wrist when it is time for a trial."""
         body, goals = self.body, np.array(np.broadcast_to(postures, (len(felt), len(self.body.low))))
         swing = SWING * np.sin(2 * np.pi * RATE * body.dt * (step % MOVING))
         for hand, wrist in enumerate(body.wrists):
@@ -108,7 +108,7 @@ class Trial:
         self.posture, self.seen, self.times = posture, seen, 1
 
     def worth(self, hand: int | None) -> float:
-        """Returns how well one hand was seen, or both."""
+        """Returns how well one hand or both were seen."""
         return float(self.seen.sum() if hand is None else self.seen[hand])
 
 
@@ -134,7 +134,7 @@ class Archive:
             self.lists[hand] = sorted(kept, key=lambda t: -t.worth(hand))[:KEPT]
 
     def some(self, hand: int | None) -> Trial | None:
-        """Returns one of the best, the best ones most often."""
+        """Returns one of the best trials, better ones more often."""
         trials = self.lists[hand]
         return trials[int(self.rng.uniform() * self.rng.uniform() * len(trials))] if trials else None
 

@@ -1,4 +1,4 @@
-//! Numbers of the library as arrays of NumPy, and back.
+//! Conversion between the library's numbers and NumPy's arrays.
 
 use babybench::model::{BiasType, DynType, GainType, GeomType, JointType, ObjType, SameFrame, SensorType, TrnType};
 use numpy::{Element, PyArray1, PyArray2, PyArrayDyn, PyArrayMethods, PyUntypedArray, PyUntypedArrayMethods};
@@ -67,7 +67,7 @@ impl<T: Number, const N: usize> ToArray for [[T; N]] {
 }
 
 impl ToArray for [Vec<f64>] {
-    /// Returns rows of the length of the longest, padded with zeros.
+    /// Returns rows padded with zeros to the length of the longest.
     fn to_array<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let width = self.iter().map(Vec::len).max().unwrap_or(0);
         let padded: Vec<Vec<f64>> = self
@@ -139,7 +139,7 @@ fn converted<'py, T: Element>(what: &str, values: &Bound<'py, PyAny>) -> PyResul
     Ok(asarray.call1((array, T::get_dtype(py)))?.cast_into()?)
 }
 
-/// Writes a shape as Python does.
+/// Writes a shape in Python's notation.
 fn tuple(shape: &[usize]) -> String {
     match shape {
         [n] => format!("({n},)"),

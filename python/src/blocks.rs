@@ -19,7 +19,7 @@ struct Felt {
     memory: Py<PyAny>,
     arrays: Py<PyList>,
     dict: Py<PyDict>,
-    /// Reference counts without other references.
+    /// Reference counts when nothing else holds a reference.
     idle: Py<PyList>,
 }
 

@@ -79,7 +79,7 @@ impl Env {
         Ok(())
     }
 
-    /// Does something that may let a MIMo with a schedule of ages grow.
+    /// Runs an operation that may make a MIMo with a schedule of ages grow.
     fn growing<E: IntoException + Send>(
         py: Python<'_>,
         inner: &mut Inner,

@@ -58,7 +58,7 @@ impl AssetSource for GivenFiles {
 /// The files next to a document that lies in a folder of the file system but is read under another path.
 pub struct BesideDocument {
     files: GivenFiles,
-    /// The folder that the document is read in.
+    /// The folder as whose file the document is read.
     read_in: String,
     folder: PathBuf,
 }
@@ -87,7 +87,7 @@ impl AssetSource for BesideDocument {
         self.files.contains(path)
     }
 
-    /// All results are absolute, so only the document itself refers to files from `read_in`.
+    /// All results are absolute, so only the document itself refers to files relative to `read_in`.
     fn resolve(&self, dir: &str, file: &str) -> Result<String, AssetError> {
         if dir == self.read_in {
             self.files.resolve(&self.folder.to_string_lossy(), file)

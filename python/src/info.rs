@@ -58,7 +58,7 @@ pub fn report_dict<'py>(py: Python<'py>, env: &babybench::Env, report: &LockRepo
     Ok(dict)
 }
 
-/// Returns information under the keys of the reference, in its order, and the details, if wanted.
+/// Returns information under the reference's keys, in its order, and the details if requested.
 pub fn info_dict<'py>(py: Python<'py>, info: &Info, details: bool) -> PyResult<Bound<'py, PyDict>> {
     let dict = PyDict::new(py);
     for (key, value) in info.fields(details.then_some(&info.details)) {
@@ -90,7 +90,7 @@ pub fn info_dict<'py>(py: Python<'py>, info: &Info, details: bool) -> PyResult<B
     Ok(dict)
 }
 
-/// Returns the information of all environments of a vector, as arrays over them.
+/// Returns the information of all environments of a vector, as arrays with one entry for each environment.
 pub fn infos_dict<'py>(py: Python<'py>, infos: Infos<'_>) -> PyResult<Bound<'py, PyDict>> {
     let dict = PyDict::new(py);
     let n = infos.steps.len();

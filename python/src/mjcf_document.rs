@@ -135,7 +135,7 @@ impl MjcfDocument {
         self.document.unset(self.id(number)?, name).map_err(wrong)
     }
 
-    /// Returns the text of an attribute that the document gives.
+    /// Returns the text of an attribute as given in the document.
     fn get(&self, number: usize, name: &str) -> PyResult<Option<String>> {
         let text = self.document.attribute(self.id(number)?, name).map_err(wrong)?;
         Ok(text.map(str::to_owned))

@@ -33,7 +33,7 @@ fn shape(width: Option<usize>, len: usize) -> Vec<usize> {
 /// The gears. The engine of an environment has the first of each row.
 const GEARS: &str = "actuator_gear";
 
-/// Goes through the numbers of a model as the engine of an environment has them.
+/// Visits the numbers of a model as an environment's engine has them.
 fn numbers_of<'a>(arrays: &'a Arrays, mut work: impl FnMut(Field<&'a [f64]>)) {
     model_fields(arrays, |field| {
         let first = field.name == GEARS;

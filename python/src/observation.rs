@@ -71,7 +71,7 @@ fn fresh_of<'py>(
     Ok(dict)
 }
 
-/// Returns an observation that no environment holds any more as a fresh dictionary of fresh arrays; `spaces` are those of its entries.
+/// Returns an observation that environments no longer hold as a fresh dictionary of fresh arrays; `spaces` are those of its entries.
 pub fn dict_of_row<'py>(
     py: Python<'py>,
     observation: &Observation<'_>,

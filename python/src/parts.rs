@@ -217,8 +217,8 @@ impl Parts {
         })
     }
 
-    /// Returns which of `qpos`, `qvel`, `ctrl`, `act`, `qfrc_applied`, `xfrc_applied`, `mocap_pos` and `mocap_quat` differ from the
-    /// state, bits 0 to 7.
+    /// Returns which of `qpos`, `qvel`, `ctrl`, `act`, `qfrc_applied`, `xfrc_applied`, `mocap_pos` and `mocap_quat` differ from the state, as bits 0
+    /// to 7.
     fn differences(&self, arrays: Vec<PyReadonlyArrayDyn<'_, f64>>) -> PyResult<u32> {
         self.with(|env, _| {
             let s = env.state();

@@ -227,7 +227,7 @@ struct Column {
     below: usize,
 }
 
-/// Goes through the cells of all columns.
+/// Visits the cells of all columns.
 fn visit(arrays: &mut Arrays, mut work: impl FnMut(Column, Vec<&mut dyn Cell>)) {
     let [materials, textures] = [arrays.materials.len(), arrays.textures.len()];
     macro_rules! columns {

@@ -40,7 +40,7 @@ type Span = (f64, [f64; 3], [f64; 3]);
 struct Inner {
     engine: SoftEngine,
     state: State,
-    /// A second state for what is computed without contacts and constraints.
+    /// A second state for computations without contacts and constraints.
     aside: Option<State>,
     version: u64,
     model: Arc<Model>,
@@ -297,7 +297,7 @@ impl PhysicsData {
         self.show(py, state.unwrap_or(&guard.state), groups)
     }
 
-    /// Computes what follows from accelerations and the forces of constraints at the current velocities.
+    /// Computes the quantities that follow from accelerations and constraint forces at the current velocities.
     fn rne_post_constraint(&self, py: Python<'_>) -> PyResult<()> {
         let (guard, ()) = self.with(py, |inner| {
             inner.engine.check_shape(&inner.state)?;

@@ -71,10 +71,10 @@ pub struct Field<T> {
     pub values: T,
 }
 
-/// Defines functions that go through fields in their order.
+/// Defines functions that visit the fields in order.
 macro_rules! fields {
     ($visit:ident, $visit_mut:ident, $of:ty; $($group:expr => $($name:ident = $($path:ident).+),+;)*) => {
-        /// Goes through the fields.
+        /// Visits the fields.
         pub fn $visit<'a>(of: &'a $of, mut work: impl FnMut(Field<&'a [f64]>)) {
             $($({
                 let field = &of.$($path).+;
@@ -82,7 +82,7 @@ macro_rules! fields {
             })+)*
         }
 
-        /// Goes through the fields to write them.
+        /// Visits the fields for writing.
         pub fn $visit_mut(of: &mut $of, mut work: impl FnMut(Field<&mut [f64]>)) {
             $($({
                 let field = &mut of.$($path).+;
@@ -97,7 +97,7 @@ fn width<T: Flat>(_: &T) -> Option<usize> {
     T::WIDTH
 }
 
-/// Fields that a program writes and a step reads: the first of a state.
+/// Fields that a program writes and a step reads; they come first in a state.
 pub const INPUT: u32 = 1;
 /// Poses of bodies, joints, geoms and sites.
 const KINEMATICS: u32 = 1 << 1;
@@ -111,7 +111,7 @@ const TENDON: u32 = 1 << 4;
 const TRANSMISSION: u32 = 1 << 5;
 /// Velocities of bodies.
 const COM_VELOCITY: u32 = 1 << 6;
-/// Rates of lengths, and what follows from velocities otherwise.
+/// Rates of lengths, and other quantities that follow from velocities.
 const VELOCITY: u32 = 1 << 7;
 /// Forces of actuators.
 const ACTUATION: u32 = 1 << 8;

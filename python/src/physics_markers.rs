@@ -4,7 +4,7 @@ use babybench::model::{Arrays, GeomType};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
-/// A geom that a program adds to a picture: shape, size, colour. Its pose is apart.
+/// A geom that a program adds to a picture: shape, size, colour. Its pose is stored separately.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Marker {
     kind: GeomType,

@@ -95,7 +95,7 @@ impl Recorder {
     }
 }
 
-/// Turns an error of a record into Python's exception.
+/// Converts an error of a record to Python's exception.
 fn exception(error: RecordError) -> PyErr {
     match error {
         RecordError::Io { ref source, .. } => {
@@ -188,7 +188,7 @@ pub fn replay_record(py: Python<'_>, folder: PathBuf, episode: u64) -> PyResult<
     })
 }
 
-/// Turns an error of a motion into Python's exception.
+/// Converts an error of a motion to Python's exception.
 fn motion_exception(error: MotionError) -> PyErr {
     match error {
         MotionError::Io { ref source, .. } => {

@@ -19,7 +19,7 @@ pub fn references(object: &Bound<'_, PyAny>) -> PyResult<usize> {
 /// Memory for arrays of one size.
 pub struct Recycled<T> {
     pieces: Vec<Py<PyArray1<T>>>,
-    /// Reference count of a piece without other references.
+    /// Reference count of a piece when nothing else refers to it.
     idle: usize,
     /// The piece that is dropped next, if all are held.
     next: usize,

@@ -81,7 +81,7 @@ impl Arrays {
         self.copies(py, |entry| entry.image.is_some())
     }
 
-    /// Returns the entries that are chosen in arrays of Python's own.
+    /// Returns the chosen entries in arrays that Python owns.
     fn copies<'py>(
         &mut self,
         py: Python<'py>,

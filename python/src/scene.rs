@@ -1,4 +1,4 @@
-//! Scenes as documents, and the parts of a scene's model that are stored in another form than in MuJoCo.
+//! Scenes as documents, and the parts of a scene's model that are stored in a different form from MuJoCo's.
 
 use std::path::PathBuf;
 

@@ -30,7 +30,7 @@ const WRITABLE: [&str; 9] = [
     "qacc_warmstart",
 ];
 
-/// Writes an array; what follows from it is computed by the next step, or by `forward`.
+/// Writes an array; the next step or `forward` computes the quantities that follow from it.
 pub fn write(state: &mut State, name: &str, values: &Bound<'_, PyAny>) -> PyResult<()> {
     let (out, width): (&mut [f64], Option<usize>) = match name {
         "qpos" => (&mut state.qpos, None),
@@ -64,7 +64,7 @@ pub fn write(state: &mut State, name: &str, values: &Bound<'_, PyAny>) -> PyResu
     Ok(())
 }
 
-/// Returns the contacts of the start of the last physics step as arrays, one entry for each.
+/// Returns the contacts at the start of the last physics step as arrays, one entry for each.
 pub fn contacts<'py>(py: Python<'py>, state: &State) -> PyResult<Bound<'py, PyDict>> {
     let (dict, contacts) = (PyDict::new(py), &state.contact);
     let ids = |side: usize| PyArray1::from_iter(py, contacts.iter().map(move |c| c.geom[side] as i32));

@@ -36,7 +36,7 @@ pub fn body_values<'py>(py: Python<'py>, touch: &Touch, body: usize) -> PyResult
     shaped(py, values, &[values.len() / width, width])
 }
 
-/// Returns the sensors that contacts have reached, ascending, and their values.
+/// Returns the sensors that contacts have reached, in ascending order, and their values.
 pub fn touched<'py>(py: Python<'py>, touch: &Touch) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyAny>)> {
     let mut sensors = touch.touched().to_vec();
     sensors.sort_unstable();

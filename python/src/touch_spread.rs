@@ -1,4 +1,4 @@
-//! MIMo's linear spread of forces, for senses with a program's own touch function.
+//! MIMo's linear spread of forces, for senses with a custom touch function.
 
 use numpy::{PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2, PyReadwriteArray2};
 use pyo3::exceptions::{PyIndexError, PyValueError};

@@ -44,7 +44,7 @@ struct Inner {
     all: Arrays,
     /// Rows of the environments that were received last.
     some: Option<Arrays>,
-    /// Whether the last rows are those of a receive.
+    /// Whether the last rows come from a receive.
     received: bool,
     actions: Vec<f32>,
 }
@@ -53,7 +53,7 @@ struct Inner {
 #[pyclass(frozen, module = "babybench_core._native")]
 pub struct VectorEnv {
     inner: Guarded<Inner>,
-    /// The process that the threads are in.
+    /// The process that the threads belong to.
     process: u32,
 }
 

@@ -27,8 +27,8 @@ SCENE = """<mujoco>
 </mujoco>"""
 LEVER = SCENE.replace(
     "  </worldbody>\n",
-    """    <body name="lever" pos="0 3 1">
-      <joint name="lever" type="slide" range="-.1 .1" limited="true" springref=".1" stiffness="3"/><geom size=".05" mass="1"/></body>
+    """    <body name="lever" pos="0 3 1"><geom size=".05" mass="1"/>
+      <joint name="lever" type="slide" range="-.1 .1" limited="true" springref=".1" stiffness="3"/></body>
   </worldbody>
   <tendon><fixed name="string" range="-.2 .2" limited="true" stiffness="5" springlength="0 .1" frictionloss=".1">
     <joint joint="lever" coef="1"/></fixed></tendon>

@@ -18,7 +18,7 @@
 pub const LENGTH_MIN: f64 = 0.5;
 /// The longest length at which a muscle is active.
 pub const LENGTH_MAX: f64 = 1.6;
-/// The force of a muscle that is lengthened fast.
+/// The force of a muscle that lengthens fast.
 pub const FORCE_LENGTHENING: f64 = 1.2;
 /// The passive force at [`LENGTH_MAX`].
 pub const FORCE_PASSIVE: f64 = 1.3;

@@ -8,7 +8,7 @@ use crate::spaces::BoxSpace;
 /// Bound of a control without a range.
 const UNLIMITED: [f64; 2] = [-1.0, 1.0];
 
-/// Drives MIMo as an actuation model does, and the other actuators of the scene by the rest of the action, a control for each.
+/// Drives MIMo by an actuation model, and the scene's other actuators by the rest of the action, which has one control for each.
 ///
 /// The controls are within the range of the actuator (`ctrlrange`), or within -1 and 1 if it has none. The observation has these
 /// controls, then angle and velocity (rad, rad/s, or m, m/s) of every joint with one degree of freedom that such an actuator drives.

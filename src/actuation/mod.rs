@@ -41,7 +41,7 @@ pub trait Actuation: Send + Sync {
     /// such numbers. The controls of other actuators stay 0, except for [`Actuation::extra_actuators`].
     fn actuators(&self) -> &[usize];
 
-    /// Returns the actuators of other bodies that an action drives, by id: each by one of the last numbers. None unless `act_others`.
+    /// Returns the actuators of other bodies that an action drives, by id: each by one of the last numbers. Empty unless `act_others` is set.
     fn extra_actuators(&self) -> &[usize] {
         &[]
     }
@@ -82,7 +82,7 @@ pub trait Actuation: Send + Sync {
     fn cost(&self, model: &Model, state: &State) -> f64;
 }
 
-/// Sets the controls of actuators, by id, to numbers of an action, clipped to the bounds of the space from its dimension `first` on.
+/// Sets the controls of actuators, by id, to numbers of an action, clipped to the bounds of the space starting with its dimension `first`.
 pub(crate) fn set_controls(ctrl: &mut [f64], space: &BoxSpace, actuators: &[usize], first: usize, action: &[f32]) {
     for (k, (&i, &value)) in actuators.iter().zip(action).enumerate() {
         ctrl[i] = f64::from(space.clip(first + k, value));
@@ -114,7 +114,7 @@ fn named(model: &Model, actuators: &[usize], ending: &str) -> Vec<String> {
     names.map(|n| format!("{n}{ending}")).collect()
 }
 
-/// Removes the values that muscles keep in a state, and lets the activations of the actuators rest.
+/// Removes the muscles' values from a state and resets the activations of its actuators.
 fn clear_muscles(model: &Model, state: &mut State) {
     for values in [&mut state.act, &mut state.muscle_force, &mut state.muscle_torque] {
         values.clear();

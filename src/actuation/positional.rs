@@ -143,7 +143,7 @@ impl Actuation for PositionalModel {
         }
     }
 
-    /// The observed targets are those of the action; the servos get angles at which they exert the reflexes' torques, too.
+    /// The observed targets are those of the action; the servos get angles at which they also exert the reflexes' torques.
     fn drive(&self, model: &Model, state: &mut State, action: &[f32], commands: &[MotorCommand]) {
         self.set_action(model, state, action);
         for (&i, command) in self.actuators.iter().zip(commands) {

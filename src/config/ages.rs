@@ -1,4 +1,4 @@
-//! The keys of a MIMo who grows: `age` takes a schedule, too.
+//! The keys of a growing MIMo: `age` also accepts a schedule.
 
 use super::kinds::{KeyKind, KeyValue};
 use super::schedule::AgeSchedule;

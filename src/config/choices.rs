@@ -80,7 +80,7 @@ choices! {
 }
 
 choices! {
-    /// The limb that the ribbon of the mobile is at (`mobile_limb`).
+    /// The limb to which the ribbon of the mobile is tied (`mobile_limb`).
     Limb {
         /// The right ankle.
         #[default]
@@ -119,7 +119,7 @@ choices! {
 choices! {
     /// The course of the springs and dampers of joints over age (`springs`).
     SpringModel {
-        /// Nothing: they are those of the original proportions.
+        /// Constant: those of the original proportions.
         #[default]
         Fixed = "fixed",
         /// The torque of gravity on the joint.
@@ -280,9 +280,9 @@ choices! {
         Rooting = "rooting",
         /// A drop of the head spreads the arms, then closes them.
         Moro = "moro",
-        /// A turned head stretches arm and leg of the face's side and bends those of the other (the asymmetric tonic neck reflex).
+        /// A turned head stretches the arm and leg on the face's side and bends those on the other (the asymmetric tonic neck reflex).
         Atnr = "atnr",
-        /// Loaded soles of an upright infant step.
+        /// An upright infant with loaded soles steps.
         Stepping = "stepping",
         /// The eyes turn against the head (the vestibulo-ocular reflex).
         Vor = "vor",

@@ -36,7 +36,7 @@ const BODY: [&str; 6] = [
     "age_schedule",
 ];
 
-/// Keys that shape a sense, and what to do when it is off.
+/// Keys that shape a sense, and the remedy when it is off.
 struct SenseKeys {
     off: fn(&Config) -> bool,
     keys: &'static [&'static str],
@@ -186,7 +186,7 @@ impl Config {
         Some((key, value, reason.to_string()))
     }
 
-    /// Returns the first value with which observations would not be the same while MIMo grows.
+    /// Returns the first value with which observations would change their shape while MIMo grows.
     fn unequal_ages(&self) -> Option<Conflict> {
         if self.age_schedule.is_empty() || !self.touch_enabled() || self.touch_grows {
             return None;

@@ -1,4 +1,4 @@
-//! Defaults of tasks, and their exclusions.
+//! Defaults of tasks, and values that they exclude.
 
 use super::error::Conflict;
 use super::table::KEYS;

@@ -173,7 +173,7 @@ impl ConfigError {
     }
 }
 
-/// Prepares text of a file for an error message: escaped and cut short.
+/// Prepares text from a file for an error message: escaped and shortened.
 pub(super) fn shown(text: &str) -> String {
     const MOST: usize = 60;
     let mut out: String = text.chars().take(MOST).flat_map(char::escape_debug).collect();

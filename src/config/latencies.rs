@@ -1,18 +1,18 @@
 //! Delays of senses by age, from latencies measured in infants.
 
-/// A latency at some ages: months and ms. It changes in a straight line between them, and stays before the first and after the last.
+/// A latency at some ages: months and ms. It is linear between them, and constant before the first and after the last.
 pub(crate) type Latency = [[f64; 2]];
 
-/// Of sight: the peak P1 of potentials that reversing checks evoke, large ones (McCulloch, Orbach and Skarf 1999, Vision Research 39, 3673, for
+/// Vision: the peak P1 of potentials evoked by large reversing checks (McCulloch, Orbach and Skarf 1999, Vision Research 39, 3673, for
 /// newborns; Lee et al. 2012, Investigative Ophthalmology and Visual Science 53, 1306, for 15 weeks, as adults).
 pub(crate) const SIGHT: &Latency = &[[0.0, 260.0], [3.45, 104.0]];
 
-/// Of touch and proprioception: the first cortical response to the median nerve at the wrist (Nevalainen, Lauronen and Pihko 2010, IFMBE
+/// Touch and proprioception: the first cortical response to stimulation of the median nerve at the wrist (Nevalainen, Lauronen and Pihko 2010, IFMBE
 /// Proceedings 28, for newborns; Smit et al. 2000, Clinical Neurophysiology 111, 901, for six months).
 pub(crate) const SKIN: &Latency = &[[0.0, 30.0], [6.0, 20.0]];
 
-/// Balance: the wave p13 of the neck's muscles (Young et al. 2009, European Journal of Paediatric Neurology 13, 235, for newborns), which
-/// hardly changes.
+/// Balance: the wave p13 of the neck's muscles (Young et al. 2009, European Journal of Paediatric Neurology 13, 235, for newborns), which barely
+/// changes.
 pub(crate) const BALANCE: &Latency = &[[0.0, 13.3]];
 
 /// Returns a latency at an age in months, ms.

@@ -68,7 +68,7 @@ use std::path::Path;
 
 impl Config {
     /// Reads a configuration; `file_name` only names the file in errors, and the path of a scene starts at the working directory.
-    /// [`ConfigReader`] reads one with other defaults, another folder or other limits.
+    /// [`ConfigReader`] accepts other defaults, another folder or other limits.
     ///
     /// # Errors
     /// Returns the first fault of the text, see [`ConfigError`].

@@ -1,4 +1,4 @@
-//! Reading of configurations: what missing keys mean, where paths start, and how long a text may be.
+//! Reading of configurations, with the values of missing keys, the folder at which paths start, and the limits of a text.
 
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};

@@ -1,4 +1,4 @@
-//! The surroundings of MIMo: those of the library by name, or a custom document by its path.
+//! MIMo's surroundings: a scene of the library by name, or a custom document by its path.
 
 use std::fmt;
 use std::path::Path;

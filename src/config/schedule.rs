@@ -1,4 +1,4 @@
-//! The schedule of ages of a MIMo who grows while he learns.
+//! The schedule of ages of a MIMo that grows while it learns.
 
 use std::fmt;
 
@@ -26,7 +26,7 @@ impl AgeSchedule {
     /// The greatest number of points.
     pub const MAX_POINTS: usize = 1000;
 
-    /// Creates a schedule from points of steps and months, in order; `None` if the first is not at step 0, the steps do not rise, an age
+    /// Creates a schedule from points of steps and months, in order; `None` if the first is not at step 0, the steps do not increase, an age
     /// is not finite or negative, or there are more than [`AgeSchedule::MAX_POINTS`].
     pub fn new(points: impl IntoIterator<Item = (u64, f64)>) -> Option<Self> {
         let points: Vec<_> = points.into_iter().take(Self::MAX_POINTS + 1).collect();

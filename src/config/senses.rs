@@ -54,10 +54,10 @@ impl Config {
 }
 
 impl EyeOptions {
-    /// Age of the acuity of eyes of a MIMo without age, months.
+    /// Age of the eyes' acuity for a MIMo without an age, months.
     pub const DEFAULT_AGE: f64 = 18.0;
 
-    /// Returns the ages of the acuity of the left and the right eye, months, of a MIMo of some age; `None` for sharp eyes.
+    /// Returns the ages of the left and the right eye's acuity, months, for MIMo at a given age; `None` for sharp eyes.
     pub fn ages(&self, age: Option<f64>) -> [Option<f64>; 2] {
         let common = self.acuity.then(|| age.unwrap_or(Self::DEFAULT_AGE));
         [self.acuity_left.or(common), self.acuity_right.or(common)]

@@ -290,7 +290,7 @@ impl<'de> Visitor<'de> for ValueSeed {
     }
 }
 
-/// A number, or text that may be one: formats differ in what the keys of a map are.
+/// A number, or text that may be one: formats differ in the types of map keys.
 struct Scalar(String);
 
 impl<'de> Deserialize<'de> for Scalar {

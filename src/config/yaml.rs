@@ -109,7 +109,7 @@ impl<'t> YamlReader<'t> {
         }
     }
 
-    /// Goes to the first key.
+    /// Moves to the first key.
     fn start(&mut self) -> Result<(), ConfigError> {
         loop {
             return match self.next()? {
@@ -152,7 +152,7 @@ impl<'t> YamlReader<'t> {
         Ok(Some((own, value, value_at)))
     }
 
-    /// Refuses a key that was there before: PyYAML keeps the last one in silence, which hides a mistake.
+    /// Refuses a repeated key: PyYAML silently keeps the last one, which hides mistakes.
     fn refuse_second(&self, index: usize, seen: &[Option<LineColumn>], at: LineColumn) -> Result<(), ConfigError> {
         let Some((first_line, _)) = seen[index] else {
             return Ok(());
@@ -286,7 +286,7 @@ impl<'t> YamlReader<'t> {
     }
 }
 
-/// Returns a value as errors show it.
+/// Returns a value in the form that errors show.
 fn written(text: &str, plain: bool) -> String {
     let text = error::shown(text);
     if plain { text } else { format!("'{text}' in quotes") }

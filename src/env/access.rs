@@ -78,7 +78,7 @@ impl Env {
         self.physics.state_mut()
     }
 
-    /// Returns the senses: what they consist of, and what they felt last.
+    /// Returns the senses: their description, and their last values.
     pub fn senses(&self) -> &Senses {
         &self.senses
     }

@@ -4,11 +4,11 @@ use crate::config::{ActuationModel, Compat, Config};
 use crate::sensors::transform::DelayLine;
 use crate::spaces::{BoxSpace, ColoredNoise, NumpyRng};
 
-/// Passes actions to the actuators, immediately or after a delay, as they are or with noise that grows with them.
+/// Passes actions to the actuators, immediately or after a delay, unchanged or with noise that grows with them.
 #[derive(Clone, Debug)]
 pub(crate) struct ActionDelay {
     line: Option<DelayLine>,
-    /// The action that reaches the actuators before the first of an episode.
+    /// The action that reaches the actuators before the first one of an episode.
     rest: Vec<f32>,
     compat: Compat,
     /// Standard deviation of the noise, as a share of each number.

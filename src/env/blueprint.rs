@@ -56,7 +56,7 @@ pub struct Blueprint {
     params: Shared<Params>,
     /// The identity that a snapshot must match.
     identity: Arc<Identity>,
-    /// Identity, model and parameters before a program changed the model.
+    /// Identity, model and parameters from before a program changed the model.
     origin: Arc<UnchangedModel>,
     surface: SkinAndScenery,
     ages: AgeCache,

@@ -113,8 +113,8 @@ impl<'a> ManualControl<'a> {
         self.env.end_episode()
     }
 
-    /// Resets like MuJoCo's `mj_resetData`: time and controls are 0, positions are `qpos0`, velocities are 0 and the actuators rest. It
-    /// computes nothing from them; [`ManualControl::forward`] does. Delays and pain are cleared. Counters and information remain.
+    /// Resets like MuJoCo's `mj_resetData`: time and controls are 0, positions are `qpos0`, velocities are 0 and the actuators are at rest. Derived
+    /// quantities are not computed; [`ManualControl::forward`] does that. Delays and pain are cleared. Counters and information remain.
     ///
     /// Under `compat: reference` a reset of the environment consists of this, [`ManualControl::forward`] at the settled state, and the start
     /// actions.
@@ -175,7 +175,7 @@ impl<'a> ManualControl<'a> {
         stepped
     }
 
-    /// Senses the state and recomputes [`Env::observation`]. Noise is drawn again, and delays count it as a further step.
+    /// Senses the state and recomputes [`Env::observation`]. Noise is drawn again, and delays count this as a further step.
     ///
     /// # Errors
     /// Those of the renderer.
@@ -192,8 +192,8 @@ impl<'a> ManualControl<'a> {
         self.env.track();
     }
 
-    /// Moves a body with `mocap="true"` to a position (world, m) and an orientation (w, x, y, z, of any nonzero length), from the next
-    /// step on. The body stays there until it is moved again or a reset puts it back where the document has it. Paths of
+    /// Moves a body with `mocap="true"` to a position (world, m) and an orientation (w, x, y, z, of any nonzero length), from the next step. The body
+    /// stays there until it is moved again or a reset returns it to its position in the document. Paths of
     /// [`Config::mocap_motion`](crate::Config::mocap_motion) take precedence: they set the poses of their bodies in every step.
     ///
     /// ```
@@ -231,7 +231,7 @@ impl<'a> ManualControl<'a> {
         Ok(())
     }
 
-    /// Returns whether a step may follow: there was a reset, and nothing has diverged since.
+    /// Returns whether a step may follow: the environment was reset and has not diverged since.
     pub fn ready(&self) -> bool {
         self.env.ready()
     }

@@ -9,7 +9,7 @@ use crate::physics::{Params, Row};
 #[derive(Clone, Debug, Error, PartialEq)]
 #[non_exhaustive]
 pub enum ModelChangeError {
-    /// Anything else was changed.
+    /// Something else was changed.
     #[error(
         "the model was changed in what cannot change while an environment lives; what can are the numbers of {}: change the document or the \
          configuration for the rest, and make another environment",

@@ -1,7 +1,7 @@
 //! Clocks of senses that sample less often than the environment steps.
 
-/// The clock of a sense with a rate of its own. The sense samples at the start of an episode, and then whenever its rate calls for
-/// one more sample. A sample is late by less than a step, and the rate holds on average.
+/// The clock of a sense with its own rate. The sense samples at the start of an episode, and then whenever its rate calls for
+/// one more sample. A sample is late by less than a step, and the average rate is exact.
 #[derive(Clone, Debug)]
 pub(super) struct Clock {
     /// Samples per step, at most 1.

@@ -12,14 +12,14 @@ pub struct InfoDetails {
     /// Names of the parts that the right and the left palm have touched, in the order of the lists of geoms, for the behavior
     /// `self_touch`; see [`PartNames`].
     pub touched_parts: Option<PerHand<Vec<Arc<str>>>>,
-    /// Angle of each hand from the axis of each eye, rad, for the behavior `hand_regard`. Less than 15 degrees count. `None` right after
+    /// Angle of each hand from the axis of each eye, rad, for the behavior `hand_regard`. Angles of less than 15 degrees count. `None` right after
     /// a reset or a restored snapshot.
     pub gaze_angles: Option<PerEyeAndHand<f64>>,
     /// Age of the pictures of the eyes, s, without their delay, with a [`vision_rate`](crate::Config::vision_rate). `None` right after a
     /// reset or a restored snapshot.
     pub vision_age: Option<f64>,
-    /// Both ways to count hands in view, for the behavior `hand_regard`. [`BehaviorInfo`](crate::env::BehaviorInfo) holds one of them, by
-    /// [`Compat`](crate::config::Compat).
+    /// Both ways to count hands in view, for the behavior `hand_regard`. [`BehaviorInfo`](crate::env::BehaviorInfo) holds the one that
+    /// [`Compat`](crate::config::Compat) selects.
     pub regards: Option<RegardCounts>,
     /// Age of MIMo's body, months, with an [`age_schedule`](crate::Config::age_schedule).
     pub age: Option<f64>,

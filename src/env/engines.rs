@@ -36,8 +36,8 @@ impl EngineSource<'_> {
     }
 }
 
-/// The engines of a blueprint. They keep nothing from one step to the next, so environments share them: a thread that steps many
-/// environments has the working memory of one engine in its cache instead of one for each.
+/// The engines of a blueprint. They keep nothing from one step to the next, so environments share them: a thread that steps many environments has the
+/// working memory of only one engine in its cache.
 pub(crate) struct Engines {
     kind: EngineMaker,
     /// An engine that answers questions about the model and never steps.

@@ -1,4 +1,4 @@
-//! The life of an episode: its start, its counters, its end.
+//! The course of an episode: its start, its counters, its end.
 
 use super::outcome::clear;
 use super::task::StagedTask;
@@ -13,7 +13,7 @@ pub(super) struct Episode {
     pub steps: u64,
     /// Number of steps of all earlier episodes.
     pub earlier_steps: u64,
-    /// Whether a step may follow: there was a reset, and nothing has diverged since.
+    /// Whether a step may follow: the environment was reset and has not diverged since.
     pub ready: bool,
     /// Whether information continues from episode to episode.
     pub accumulate: bool,
@@ -47,7 +47,7 @@ impl Env {
         Ok(self.observation())
     }
 
-    /// Returns whether a step may follow: there was a reset, and nothing has diverged since.
+    /// Returns whether a step may follow: the environment was reset and has not diverged since.
     pub(crate) fn ready(&self) -> bool {
         self.episode.ready
     }
@@ -85,7 +85,7 @@ impl Env {
         Ok(())
     }
 
-    /// Returns the phase at which senses with rates of their own start an episode: a number from 0 to 1 derived from the generator
+    /// Returns the phase at which senses with their own rates start an episode: a number from 0 to 1 derived from the generator
     /// without drawing from it, so that environments with different seeds sample in different steps.
     pub(super) fn phase(&self) -> f64 {
         // of a copy: switching a sense's rate on changes no random choice

@@ -27,7 +27,7 @@ pub enum EnvError {
     /// A custom scene breaks a rule.
     #[error(transparent)]
     CustomScene(#[from] CustomSceneError),
-    /// The paths of the configuration cannot be read, or name bodies that the scene does not have.
+    /// The paths in the configuration cannot be read, or name bodies that the scene does not have.
     #[error(transparent)]
     MocapMotion(#[from] PathError),
     /// MIMo cannot grow to the age of the configuration.
@@ -116,7 +116,7 @@ pub enum EnvError {
         /// Quantity that would be wrong.
         what: &'static str,
     },
-    /// A program changes what a MIMo who grows by a schedule would lose at the next age.
+    /// A program changes something that a MIMo with a schedule of ages would lose at the next age.
     #[error(
         "MIMo grows by `age_schedule`, which makes his model anew at each age, so a program cannot change his {what}: leave the schedule out"
     )]

@@ -43,7 +43,7 @@ impl Senses {
 }
 
 impl<'a> SensesMut<'a> {
-    /// Draws the picture of the last observation, if it is still to be drawn ([`Config::vision_lazy`](crate::Config::vision_lazy)), and
+    /// Draws the picture of the last observation, if it has not been drawn yet ([`Config::vision_lazy`](crate::Config::vision_lazy)), and
     /// returns the whole observation. The picture has the same bits as without `vision_lazy`, even after other requests. Until
     /// then the observation has no images, and if a step comes first the picture is lost. Otherwise nothing is drawn.
     ///

@@ -3,7 +3,7 @@
 use super::{Blueprint, Env, EnvError, Snapshot};
 use crate::spaces::{BoxSpace, ObservationSpace};
 
-/// The greatest number of steps of a life: no run reaches it, and counting from it cannot overflow.
+/// The greatest number of steps of an environment: no run reaches it, and counting from it cannot overflow.
 const MAX_STEPS: u64 = 1 << 62;
 
 impl Env {
@@ -12,7 +12,7 @@ impl Env {
         self.episode.earlier_steps + self.episode.steps
     }
 
-    /// Sets the number of steps of a life without the current episode; `false` if it is out of range.
+    /// Sets the number of steps before the current episode; `false` if it is out of range.
     pub(crate) fn set_earlier_steps(&mut self, steps: u64) -> bool {
         let fits = steps <= MAX_STEPS;
         if fits {
@@ -26,7 +26,7 @@ impl Env {
         !self.config().age_schedule.is_empty()
     }
 
-    /// Lets MIMo grow to the age at which an episode begins now, if he has another one.
+    /// Lets MIMo grow to the age at which an episode begins now, if that differs from his age.
     ///
     /// # Errors
     /// As [`Blueprint::with_age`]; [`EnvError::Spaces`]. They change nothing.
@@ -88,7 +88,7 @@ impl Env {
     }
 }
 
-/// A difference between the spaces of an environment and those of others: the space, theirs, its own.
+/// A difference between the spaces of an environment and those of others: the space, their value, its own.
 pub(crate) type SpaceDifference = (String, String, String);
 
 /// Returns how an environment differs from those with which it will share arrays.

@@ -44,12 +44,12 @@ pub struct Infant {
     coupling: Coupling,
 }
 
-/// A snapshot of an [`Infant`]. The program keeps that of its world.
+/// A snapshot of an [`Infant`]. The program keeps the snapshot of its world.
 #[derive(Clone, Debug, PartialEq)]
 pub struct InfantSnapshot {
     /// The snapshot of the environment.
     pub env: Snapshot,
-    /// The snapshot of the coupling: which bodies of the world stand in his scene.
+    /// The snapshot of the coupling, with the bodies of the world that are in his scene.
     pub coupling: CouplingSnapshot,
 }
 
@@ -114,7 +114,7 @@ impl Infant {
         Self::insert(sets, blueprint.env()?, frame, options)
     }
 
-    /// Inserts the MIMo of an environment, whose scene has [`CouplingOptions::slots`], into a world, and resets it.
+    /// Inserts the MIMo of an environment, whose scene has [`CouplingOptions::slots`], into a world, and resets the environment.
     ///
     /// # Errors
     /// As [`Infant::join`]; a time step of the world that is not that of the environment.
@@ -164,7 +164,7 @@ impl Infant {
         self.coupling.finish(sets);
     }
 
-    /// Starts an episode, on the floor of his own scene and without the bodies of the world, and puts him into the world.
+    /// Starts an episode on the floor of his own scene, without the bodies of the world, and then puts him into the world.
     ///
     /// # Errors
     /// As [`Env::reset`].
@@ -224,7 +224,7 @@ impl Infant {
     }
 }
 
-/// Checks that a step of the environment takes the time step of the world.
+/// Checks that a step of the environment fits the time step of the world.
 fn check_steps(env: &Env, sets: &WorldSets<'_>) -> Result<(), CouplingError> {
     let steps = Coupling::steps(env.model(), sets.dt)?;
     let frame_skip = env.config().frame_skip;

@@ -75,7 +75,7 @@ impl Measures {
         self.values.get(at).copied()
     }
 
-    /// Sets names and values; names without a value have 0. With the same names as before it allocates nothing.
+    /// Sets names and values; names without a value get 0. With the same names as before it allocates nothing.
     pub fn set(&mut self, names: &'static [&'static str], values: impl IntoIterator<Item = f64>) {
         self.names = names;
         self.values.clear();

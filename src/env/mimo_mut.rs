@@ -1,4 +1,4 @@
-//! Changes of MIMo: locks, age and face.
+//! Changes to MIMo: locks, age and face.
 
 use super::{Blueprint, Env, EnvError};
 use crate::config::FacialExpression;
@@ -11,8 +11,8 @@ pub struct MimoMut<'a> {
 }
 
 impl MimoMut<'_> {
-    /// Locks a joint, or all joints of a part, at an angle in rad, from the next step on. Locks outlast resets. Locks of the
-    /// configuration can be moved and removed, too.
+    /// Locks a joint, or all joints of a part, at an angle in rad, from the next step. Locks outlast resets. Locks from the configuration can also be
+    /// moved and removed.
     ///
     /// ```
     /// use babybench::config::Part;
@@ -34,7 +34,7 @@ impl MimoMut<'_> {
         self.env.physics.lock(self.env.blueprint.model(), target.into(), angle)
     }
 
-    /// Unlocks a joint, or all joints of a part, from the next step on and for later episodes.
+    /// Unlocks a joint, or all joints of a part, from the next step, also in later episodes.
     ///
     /// # Errors
     /// A joint that does not exist or cannot be locked.
@@ -42,7 +42,7 @@ impl MimoMut<'_> {
         self.env.physics.unlock(self.env.blueprint.model(), target.into())
     }
 
-    /// Changes MIMo's age, in months, between two episodes; `None` gives him the original proportions. The next call is a reset. Locks,
+    /// Changes MIMo's age, in months, between two episodes; `None` gives him the original proportions. The next call must be a reset. Locks,
     /// the generator of random choices, added transforms and the probe remain. Names and ids are the same at every age.
     ///
     /// # Errors
@@ -93,8 +93,8 @@ impl Env {
         self.blueprint.with_age(age)?.env()
     }
 
-    /// Becomes an environment of a blueprint that differs in its pictures only. A blueprint's pictures are shared, so others need another
-    /// environment.
+    /// Becomes an environment of a blueprint that differs only in its pictures. Environments of a blueprint share its pictures, so other pictures
+    /// need another environment.
     pub(super) fn become_painted(&mut self, blueprint: &Blueprint) -> Result<(), EnvError> {
         let other = blueprint.env()?;
         let (snapshot, ready, details) = (self.snapshot(), self.ready(), self.info.details.clone());

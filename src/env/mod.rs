@@ -162,8 +162,7 @@ impl std::fmt::Debug for Env {
 }
 
 impl Env {
-    /// Builds an environment from the embedded assets. Several environments of one configuration are cheaper to make from one
-    /// [`Blueprint`].
+    /// Builds an environment from the embedded assets. It is cheaper to make several environments of one configuration from one [`Blueprint`].
     ///
     /// # Errors
     /// As [`Blueprint::new`].
@@ -309,8 +308,8 @@ impl Env {
     }
 
     /// Returns the observation of the last reset, step or [`ManualControl::refresh`], all of one moment. After [`Env::restore`] it lacks
-    /// what a snapshot does not hold (touch, pain, images). It does not include changes through [`Env::state_mut`], nor images that
-    /// [`SensesMut::look`] has yet to draw.
+    /// what a snapshot does not hold (touch, pain, images). It includes neither changes through [`Env::state_mut`] nor images that
+    /// [`SensesMut::look`] has not drawn yet.
     pub fn observation(&self) -> Observation<'_> {
         self.with_goals(self.senses.observation())
     }
@@ -332,8 +331,7 @@ impl Env {
         self.blueprint.actuation().action_space().sample(&mut self.rng, action);
     }
 
-    /// Draws a seed from the generator of [`Env::sample_action`]. What a program derives from it therefore follows from the environment's
-    /// seed.
+    /// Draws a seed from the generator of [`Env::sample_action`]. Whatever a program derives from it therefore follows from the environment's seed.
     pub(crate) fn draw_seed(&mut self) -> u64 {
         self.rng.word()
     }

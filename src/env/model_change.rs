@@ -148,10 +148,10 @@ impl Env {
 }
 
 impl ModelMut<'_> {
-    /// Changes numbers of the model from the next step on, in this and in later episodes: gravity and timestep, mass, inertia, size,
-    /// poses, joint axes, friction, damping, stiffness, armature, gears, the laws of actuators and tendons, softness. It has the effect of
-    /// writing into MuJoCo's `mjModel`: constants derived from these numbers (`body_invweight0`, `dof_invweight0`, `geom_rbound`) keep their
-    /// values unless the program writes them, too.
+    /// Changes numbers of the model from the next step, in this and in later episodes: gravity and timestep, mass, inertia, size,
+    /// poses, joint axes, friction, damping, stiffness, armature, gears, the laws of actuators and tendons, softness. It has the same effect as
+    /// writing into MuJoCo's `mjModel`: constants derived from these numbers (`body_invweight0`, `dof_invweight0`, `geom_rbound`) keep their values
+    /// unless the program also writes them.
     ///
     /// A body whose mass or size a task has changed in an episode keeps the task's values until the episode ends. Snapshots of an
     /// environment fit others with the same changes only. [`MimoMut::set_age`](crate::env::MimoMut::set_age) rebuilds the model without
@@ -298,7 +298,7 @@ impl Blueprint {
         self.changed_numbers().into_iter().map(|(name, _)| name).collect()
     }
 
-    /// Returns the numbers that differ from the model of the scene: names as in [`CHANGEABLE`], and whole arrays, rows one after the other.
+    /// Returns the numbers that differ from the model of the scene: names as in [`CHANGEABLE`], and whole arrays, row by row.
     pub fn changed_numbers(&self) -> Vec<(&'static str, Vec<f64>)> {
         let (model, params) = self.origin();
         let (first, now) = (shown(model, params), self.model_arrays());

@@ -1,11 +1,11 @@
-//! Notices about requests of a configuration that cannot be met.
+//! Notices about requests of a configuration that cannot be fulfilled.
 
 use super::Blueprint;
 use crate::sensors::EYES;
 use crate::sensors::transform::acuity_cutoff;
 
 impl Blueprint {
-    /// Returns a sentence for each request of the configuration that cannot be met: images too small for the acuity of the eyes, so that
+    /// Returns a sentence for each request of the configuration that cannot be fulfilled: images too small for the acuity of the eyes, so that
     /// the number of pixels limits what MIMo sees.
     pub fn notices(&self) -> Vec<String> {
         let (config, model) = (self.config(), self.model());

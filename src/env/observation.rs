@@ -30,7 +30,7 @@ macro_rules! observation {
 
         impl<'a> Observation<'a> {
             /// Makes an observation from the numbers that `values` returns for each entry, in the order of [`ObservationEntry::ALL`].
-            /// Numbers of another type than the entry's are left out.
+            /// Numbers whose type differs from the entry's are left out.
             pub fn from_fn(mut values: impl FnMut(&'static ObservationEntry) -> Option<Values<'a>>) -> Self {
                 let mut entries = ObservationEntry::ALL.iter();
                 let mut next = || entries.next().and_then(&mut values);

@@ -36,7 +36,7 @@ impl Env {
         self.episode.steps >= self.blueprint.config().max_episode_steps
     }
 
-    /// Reads the achieved goal, and computes outcome, reward and end of the last step.
+    /// Reads the achieved goal and computes the outcome and reward of the last step, and whether it ends the episode.
     pub(super) fn judge(&mut self) {
         let view = TaskView {
             model: self.blueprint.model(),
@@ -73,7 +73,7 @@ impl Env {
         *steps += 1;
     }
 
-    /// Computes outcome, reward and end of the last step from its goals.
+    /// Computes the outcome and reward of the last step, and whether it ends the episode, from its goals.
     pub(super) fn conclude(&mut self) {
         let verdict = self.task.judge(self.goals.row());
         self.episode.reward = verdict.reward;

@@ -33,7 +33,7 @@ struct BodyPath {
     /// Its number among the mocap bodies.
     mocap: usize,
     pos: Vec<Vec3>,
-    /// Empty if the text has no orientations.
+    /// Orientations; empty if the text has none.
     quat: Vec<Quat>,
 }
 
@@ -46,7 +46,7 @@ struct BodyColumns<'a> {
 
 impl Paths {
     /// Reads paths: a line of names, `time` and `BODY.x`, `BODY.y`, `BODY.z`, with or without `BODY.qw` to `BODY.qz`, then a line of
-    /// numbers for each time. An empty text has none.
+    /// numbers for each time. An empty text has no paths.
     pub fn new(text: &str, model: &Model) -> Result<Option<Self>, PathError> {
         let lines = text.lines().enumerate().map(|(k, line)| (k + 1, line.trim()));
         let mut lines = lines.filter(|(_, line)| !line.is_empty() && !line.starts_with('#'));
@@ -80,7 +80,7 @@ impl Paths {
         Ok(Some(Self { times, bodies }))
     }
 
-    /// Moves the bodies to their poses at the time of a state. After the last time the paths start again.
+    /// Moves the bodies to their poses at the time of a state. After their last time the paths start again.
     pub fn place(&self, state: &mut State) {
         let (before, share) = self.moment(state.time);
         let after = (before + 1).min(self.times.len() - 1);

@@ -24,7 +24,7 @@ use crate::mimo::{LockReport, LockTarget, lock, lock_of, unlock};
 use crate::model::Model;
 use crate::physics::{Engine, EngineError, Params, Shared, State};
 
-/// The state with which the last engine call began, for the fields that the call or a task after it has changed.
+/// The fields that the last engine call, or a task after it, has changed, with their values before the call.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct LastEngineCall {
     call: EngineCall,
@@ -47,7 +47,7 @@ pub(crate) enum EngineCall {
 }
 
 impl LastEngineCall {
-    /// Records what a call begins with.
+    /// Records the inputs of a call.
     pub fn note(&mut self, call: EngineCall, state: &State) {
         (self.call, self.time, self.step) = (call, state.time, state.step);
         self.qpos.clone_from(&state.qpos);
@@ -56,7 +56,7 @@ impl LastEngineCall {
         self.qacc_warmstart.clone_from(&state.qacc_warmstart);
     }
 
-    /// Repeats the call. If nothing has changed the state since the call, its computed quantities are the same again.
+    /// Repeats the call. If the state has not changed since the call, its computed quantities come out the same.
     fn repeat(&self, engines: &Engines, state: &mut State) {
         if let EngineCall::None = self.call {
             return;
@@ -87,7 +87,7 @@ pub(crate) enum ScratchUse {
 pub(crate) struct Physics {
     /// The engines that all environments of the blueprint share.
     engines: Arc<Engines>,
-    /// An engine of its own, on a program's request.
+    /// The environment's own engine, created on a program's request.
     own: Option<Box<dyn Engine>>,
     /// All of the state in [`StateStorage::Whole`], its dynamic part in [`StateStorage::Split`], nothing in [`StateStorage::Working`].
     kept: Box<State>,
@@ -138,7 +138,7 @@ impl Clone for Physics {
 }
 
 impl Physics {
-    /// Begins with a state, whose parameters are those after a reset.
+    /// Starts with a state, whose parameters are those after a reset.
     pub fn new(engines: Arc<Engines>, state: State) -> Self {
         Self {
             engines,
@@ -160,7 +160,7 @@ impl Physics {
         }
     }
 
-    /// Returns the state. Only its dynamic part is valid in every storage.
+    /// Returns the state. Only its dynamic part is valid in every kind of storage.
     pub fn dynamic(&self) -> &State {
         match &self.storage {
             StateStorage::Whole | StateStorage::Split(_) => &self.kept,
@@ -195,7 +195,7 @@ impl Physics {
         }
     }
 
-    /// Goes from [`StateStorage::Split`] to [`StateStorage::Whole`].
+    /// Switches from [`StateStorage::Split`] to [`StateStorage::Whole`].
     fn keep_all(&mut self) {
         if let StateStorage::Split(read) = &mut self.storage {
             let read = read.take();
@@ -216,7 +216,7 @@ impl Physics {
         self.shares
     }
 
-    /// Takes a scratch state for a step or reset that begins with a call of an engine, if the environment shares. The computed part of the
+    /// Takes a scratch state for a step or reset that begins with a call of an engine, if the environment shares memory. The computed part of the
     /// scratch state is unspecified.
     pub fn begin(&mut self, work: ScratchUse) {
         match (&self.storage, work) {
@@ -266,7 +266,7 @@ impl Physics {
         self.own.as_deref().unwrap_or_else(|| self.engines.reader())
     }
 
-    /// Returns an engine of its own, with which the environment steps from now on.
+    /// Returns the environment's own engine, with which it steps from now on.
     pub fn own_engine(&mut self) -> &mut dyn Engine {
         self.keep_all();
         &mut **self.own.get_or_insert_with(|| self.engines.make())
@@ -274,7 +274,7 @@ impl Physics {
 
     /// Switches to the engines of another model of the same sizes.
     pub fn use_engines(&mut self, engines: &Arc<Engines>) {
-        // the new engines would compute other quantities than those stored
+        // the new engines would compute quantities that differ from those stored
         self.keep_all();
         self.engines = engines.clone();
         if let Some(own) = &mut self.own {

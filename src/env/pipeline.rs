@@ -27,8 +27,8 @@ struct TransformChain {
     stages: Vec<ConfiguredTransform>,
     /// The number of leading stages that depend on the current values only: acuity, foveation.
     optics: usize,
-    /// For a sense with a rate of its own: its last sample, after the leading stages. Later stages, a delay and those that a program
-    /// added, run in every step.
+    /// For a sense with its own rate: its last sample, after the leading stages. Later stages (a delay, and those that a program added) run in every
+    /// step.
     hold: Option<(usize, SampleHold)>,
 }
 
@@ -92,7 +92,7 @@ impl Pipeline {
         self.chains[sense as usize].stages.iter().map(|stage| &*stage.transform)
     }
 
-    /// Transforms the values of a sense. Without a sample in this step they are those of the last one.
+    /// Transforms the values of a sense. Without a sample in this step, they are those of the last sample.
     pub fn apply(&mut self, sense: Sense, mut signal: Signal<'_>, looked: bool, rng: &mut NumpyRng) {
         let TransformChain { stages, hold, .. } = &mut self.chains[sense as usize];
         let mut apply = |stages: &mut [ConfiguredTransform], signal: &mut Signal<'_>| {
@@ -187,8 +187,8 @@ impl Pipeline {
     }
 }
 
-/// Returns the transforms that a configuration applies to each image of an eye (0 left, 1 right) of some width and height on its own:
-/// acuity, foveation.
+/// Returns the transforms that a configuration applies to each image of an eye (0 left, 1 right) of a given width and height, independently of other
+/// images: acuity, foveation.
 pub(super) fn optics(
     model: &Model,
     config: &Config,

@@ -5,8 +5,8 @@ use crate::physics::EngineError;
 
 impl<'a> ManualControl<'a> {
     /// Starts an episode from given positions (nq) and velocities (nv) instead of the settled state, without start actions. The task
-    /// chooses a goal. MIMo keeps his age, whatever [`Config::age_schedule`](crate::Config::age_schedule) is, because the positions are
-    /// those of his body.
+    /// chooses a goal. MIMo keeps his age regardless of [`Config::age_schedule`](crate::Config::age_schedule), because the positions are those of his
+    /// body.
     ///
     /// # Errors
     /// Wrong lengths, numbers that are not finite, or a state from which the simulation diverges. The episode is then over.
@@ -117,8 +117,8 @@ impl<'a> ManualControl<'a> {
     }
 
     /// Shows the scene at positions (nq) and velocities (nv) as a step: computes poses, contacts and forces there, senses, calls
-    /// [`ManualControl::track`], computes outcome and reward, and counts a step in the information. Nothing moves: neither action nor time
-    /// act on positions, and accelerations are those with which the scene would continue from there.
+    /// [`ManualControl::track`], computes outcome and reward, and counts a step in the information. Nothing moves: neither the action nor time
+    /// changes positions, and accelerations are those with which the scene would continue from there.
     ///
     /// # Errors
     /// As [`ManualControl::forward`] and [`ManualControl::observe`].

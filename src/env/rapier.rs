@@ -6,8 +6,8 @@ use crate::physics::contact::Quirks;
 use crate::rapier::RapierScene;
 
 impl Blueprint {
-    /// Creates a mirror of the scene in Rapier, at a state ([`Env::state`](crate::Env::state)), for ray casts and shape queries. After a
-    /// step, [`RapierScene::sync`] updates it for much less than its creation costs.
+    /// Creates a mirror of the scene in Rapier, at a state ([`Env::state`](crate::Env::state)), for ray casts and shape queries. After a step,
+    /// [`RapierScene::sync`] updates it at much lower cost than creating it.
     ///
     /// ```
     /// use babybench::rapier::rapier3d_f64::prelude::{QueryFilter, Ray, Vector};

@@ -131,7 +131,7 @@ fn sizes(model: &Model) -> [usize; 4] {
 }
 
 impl Blueprint {
-    /// Returns the second infant in the scene, if a custom document includes `other_mimo.xml`. With muscles there is none, because only
+    /// Returns the second infant in the scene, if a custom document includes `other_mimo.xml`. With muscles there is no second infant, because only
     /// the learner has muscles.
     ///
     /// A second policy moves it step by step: [`SecondInfant::act`] before each step of the learner.

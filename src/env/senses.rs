@@ -19,7 +19,7 @@ use crate::sensors::{
 };
 use crate::spaces::{NumpyRng, Values};
 
-/// The images of eyes without any picture yet.
+/// The images of eyes that have no picture yet.
 static NO_IMAGES: [EyeImages; 2] = [EyeImages::NONE, EyeImages::NONE];
 
 /// The state of the picture of the last observation.
@@ -152,7 +152,7 @@ impl Senses {
         self.vestibular.clone_from(&tables.vestibular);
     }
 
-    /// Looks at the scene of a blueprint with the same eyes.
+    /// Points the same eyes at the scene of a blueprint.
     #[cfg(feature = "rapier")]
     pub(super) fn use_eyes(&mut self, blueprint: &Blueprint) -> Result<(), EnvError> {
         self.vision = vision(blueprint)?;
@@ -174,7 +174,7 @@ impl Senses {
         self.numbers[sense as usize].as_deref().unwrap_or_default()
     }
 
-    /// Iterates over what every sense reports in numbers, in the order of [`Sense::ALL`], to be written.
+    /// Iterates over the numbers of every sense, in the order of [`Sense::ALL`], for writing.
     pub(super) fn numbers_mut(&mut self) -> impl Iterator<Item = &mut [f64]> {
         self.numbers.iter_mut().filter_map(Option::as_deref_mut)
     }
@@ -263,7 +263,7 @@ impl Senses {
         self.looks(Sense::EyeLeft)
     }
 
-    /// Returns the age of the pictures of the eyes, in steps and without delays, if they have a rate of their own.
+    /// Returns the age of the eyes' pictures, in steps and without delays, if they have their own rate.
     pub(super) fn vision_age(&self) -> Option<u64> {
         self.clock(Sense::EyeLeft).map(Clock::age)
     }
@@ -273,7 +273,7 @@ impl Senses {
         self.clocks.iter_mut().flatten().for_each(Clock::advance);
     }
 
-    /// Clears the memory of the last episode. The phase, from 0 to 1, decides in which steps senses with rates of their own sample.
+    /// Clears the memory of the last episode. The phase, from 0 to 1, decides in which steps senses with their own rates sample.
     pub(super) fn reset(&mut self, phase: f64) {
         for clock in self.clocks.iter_mut().flatten() {
             clock.reset(phase);
@@ -391,7 +391,7 @@ impl Senses {
         self.observation_with(self.picture == PictureStatus::Drawn)
     }
 
-    /// Returns the last observation, with images of any moment or without images.
+    /// Returns the last observation, whose images may be missing or older.
     pub(super) fn observation_with(&self, images: bool) -> Observation<'_> {
         let eyes = if self.known && images { &self.eyes } else { &NO_IMAGES };
         Observation::from_fn(|entry| match (entry.sense?, entry.image) {
@@ -419,7 +419,7 @@ impl Senses {
     }
 }
 
-/// Returns the buffer for the numbers of a sense, which is empty if it has none.
+/// Returns the buffer for the numbers of a sense, which is empty if the sense has none.
 fn numbers_of(numbers: &mut [Option<Vec<f64>>], sense: Sense) -> &mut [f64] {
     numbers[sense as usize].as_deref_mut().unwrap_or_default()
 }

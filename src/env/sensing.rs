@@ -55,8 +55,8 @@ impl Senses {
         self.vision.as_ref().map_or(1, |vision| vision.renderer().threads())
     }
 
-    /// Returns how often the eyes were drawn for observations, both together. With [`Config::vision_lazy`](crate::Config::vision_lazy) it
-    /// counts only requests.
+    /// Returns how often the eyes were drawn for observations, counting both eyes together. With [`Config::vision_lazy`](crate::Config::vision_lazy)
+    /// it counts only requests.
     pub fn pictures_drawn(&self) -> u64 {
         self.drawn
     }
@@ -68,7 +68,7 @@ impl Senses {
         self.is_lazy()
     }
 
-    /// Returns the number of observations. Two calls with the same result are of the same moment.
+    /// Returns the number of observations. Two calls with the same result belong to the same moment.
     pub fn moment(&self) -> u64 {
         self.moment
     }
@@ -107,7 +107,7 @@ impl<'a> SensesMut<'a> {
         Ok((vision, self.env.physics.state()))
     }
 
-    /// Draws gray images of both eyes: left and right, (H, W) bytes from the top, by the weights 0.2989, 0.5870, 0.1140.
+    /// Draws gray images of both eyes: left and right, (H, W) bytes from the top, with the weights 0.2989, 0.5870, 0.1140.
     ///
     /// # Errors
     /// [`EnvError::NoVision`]; buffers that do not have H W values.
@@ -149,7 +149,7 @@ impl<'a> SensesMut<'a> {
     }
 
     /// Draws several kinds of images of both eyes, left and right: those with a buffer. On the CPU all images of an eye come from one
-    /// pass, each with the bits that it has alone. They are without the transforms of the observation.
+    /// pass, each with the bits that it has alone. The transforms of the observation are not applied.
     ///
     /// ```
     /// use babybench::render::ImageBuffers;
@@ -184,13 +184,13 @@ impl<'a> SensesMut<'a> {
         }
     }
 
-    /// Sets whether resets and steps leave the eyes' images to [`draw_eyes`](crate::env::draw_eyes), which draws them once for each.
+    /// Sets whether resets and steps skip the eyes' images. [`draw_eyes`](crate::env::draw_eyes) then draws them, once for each reset or step.
     pub fn defer_vision(&mut self, deferred: bool) {
         self.env.senses.vision_deferred = deferred;
     }
 
-    /// Adds a transform of a sense after the existing ones. Those of the configuration are, in this order: acuity and foveation of the
-    /// eyes, noise, delay.
+    /// Adds a transform of a sense after the existing ones. The configuration's transforms are, in this order: acuity and foveation of the eyes,
+    /// noise, delay.
     ///
     /// Random numbers are drawn in each reset and step after the observation is computed, sense by sense in the order of [`Sense::ALL`]
     /// and transform by transform, from the generator that also draws actions.

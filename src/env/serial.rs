@@ -11,7 +11,7 @@ use super::fields::{InfoSource, InfoValue};
 use super::{BehaviorInfo, Info, InfoDetails};
 
 impl Serialize for Info {
-    /// Serializes the keys of the reference, in its order; the details are a value of their own
+    /// Serializes the keys of the reference, in its order; the details are a separate value
     /// ([`Info::details`], [`InfoWithDetails`]).
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         InfoWithDetails {

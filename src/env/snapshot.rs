@@ -247,8 +247,7 @@ impl Env {
         Ok(())
     }
 
-    /// Checks everything after the whole numbers except the memory of senses, and reads the information of the behavior. Also returns the
-    /// memory.
+    /// Checks everything after the whole numbers except the memory of senses, and reads the information of the behavior. Also returns that memory.
     fn parse<'b>(&self, r: &ByteReader<'b>, counts: [u64; COUNTS]) -> Result<(BehaviorInfo, &'b [u8]), SnapshotError> {
         let mut r = ByteReader(r.0);
         let numbers: usize = self.numbers(&self.task_memory()).iter().map(|n| n.len()).sum();
@@ -332,7 +331,7 @@ impl InfoSource for SnapshotInfoSource<'_, '_> {
         }
     }
 
-    /// Returns the current measures. The memory of the task has the snapshot's, which it reports when it is restored.
+    /// Returns the current measures. The task's memory holds those of the snapshot, which the task reports when it is restored.
     fn measure(&mut self, key: &'static str) -> Result<f64, SnapshotError> {
         match self.now(key) {
             Some(InfoValue::Number(number)) => Ok(number),

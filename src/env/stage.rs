@@ -1,15 +1,15 @@
-//! The parts of the work of a step, for timing.
+//! The stages of a step, for timing.
 
 use std::sync::Arc;
 
 use crate::physics::Stage;
 
-/// A part of the work of [`Env::step`](crate::Env::step).
+/// A stage of [`Env::step`](crate::Env::step).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum EnvStage {
     /// From the action to controls and torques.
     Actuation,
-    /// A part of the physics steps.
+    /// A stage of the physics steps.
     Physics(Stage),
     /// Observations and information.
     Senses,

@@ -104,7 +104,7 @@ impl Viewer {
         })
     }
 
-    /// Draws the room from the camera `corner`, or from the place that [`ViewFrom::room`] gives, `render_size` by `render_size` pixels:
+    /// Draws the room from the camera `corner`, or from the place that [`ViewFrom::room`] gives, with `render_size` by `render_size` pixels:
     /// Gymnasium's `render`.
     ///
     /// # Errors

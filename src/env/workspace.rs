@@ -1,4 +1,4 @@
-//! Steps and resets of environments that share the memory for what they compute.
+//! Steps and resets of environments that share memory for computed quantities.
 
 use std::ops::{Deref, DerefMut};
 
@@ -8,7 +8,7 @@ use super::{Env, EnvError};
 /// Whether steps and resets check [`Task::only_moves`](crate::env::Task::only_moves).
 const CHECKED: bool = cfg!(any(test, debug_assertions));
 
-/// An environment that works in a scratch state, if it shares, until this is dropped.
+/// An environment that works in a scratch state, if it shares memory, until this guard is dropped.
 pub(crate) struct Workspace<'a> {
     env: &'a mut Env,
 }
@@ -46,19 +46,19 @@ impl Env {
         self.physics.shares()
     }
 
-    /// Begins a step or reset in a scratch state, if the environment shares.
+    /// Begins a step or reset in a scratch state, if the environment shares memory.
     pub(crate) fn work(&mut self, work: ScratchUse) -> Workspace<'_> {
         self.physics.begin(work);
         Workspace { env: self }
     }
 
-    /// Returns a copy for [`Env::check_reset`] before a reset that shares, in tests and debug builds.
+    /// Returns a copy for [`Env::check_reset`] before a reset in a scratch state, in tests and debug builds.
     pub(crate) fn before_reset(&self) -> Option<Self> {
         (CHECKED && self.shares()).then(|| self.clone())
     }
 
-    /// Resets a copy that keeps its whole state, and checks that the environment does not differ from it after its reset in a scratch state:
-    /// the task then has read nothing computed before the first call of the engine.
+    /// Resets a copy that keeps its whole state, and checks that it equals the environment after its reset in a scratch state. The task then read no
+    /// computed quantity before the first call of the engine.
     ///
     /// # Errors
     /// [`EnvError::OnlyMoves`].

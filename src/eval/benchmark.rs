@@ -155,7 +155,7 @@ impl Benchmark {
     }
 }
 
-/// Turns an error of an environment or a policy into one of an episode.
+/// Converts an error of an environment or a policy to an error of an episode.
 fn env_error(episode: u64) -> impl Fn(EnvError) -> EpisodeError {
     move |source| EpisodeError::Env {
         episode,

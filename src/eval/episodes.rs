@@ -46,7 +46,7 @@ pub enum EpisodeError {
          parallel; use --jobs 1"
     )]
     Jobs,
-    /// Parallel episodes of a MIMo who grows.
+    /// Parallel episodes were requested for a growing MIMo.
     #[error("MIMo grows by `age_schedule` from episode to episode, so episodes cannot run in parallel; use --jobs 1")]
     Growing,
     /// The environment returned an error.
@@ -137,7 +137,7 @@ impl Observer for crate::runs::Recorder {
 }
 
 /// Runs evaluation episodes into the configuration's `save_dir` and returns the last information of each. `progress` is called after
-/// every step and can stop the evaluation. Each job has a policy of its own.
+/// every step and can stop the evaluation. Each job has its own policy.
 ///
 /// # Errors
 /// The first that occurs. Other episodes are abandoned.
@@ -216,7 +216,7 @@ struct JobCallbacks<'a> {
     done: &'a (dyn Fn(u64, Info) + Sync),
 }
 
-/// Runs the episodes of one job in an environment of its own.
+/// Runs the episodes of one job in its own environment.
 fn episodes(
     blueprint: &Blueprint,
     plan: &Plan,

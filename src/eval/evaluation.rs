@@ -56,8 +56,8 @@ pub enum EvaluationError {
     },
 }
 
-/// Returns the score of the training log in the folder of a run, by the rule of the configuration in its scene ([`Score::counted`]);
-/// without one by that of `compat: api`.
+/// Returns the score of the training log in the folder of a run, by the rule of the configuration in its scene ([`Score::counted`]), or by that of
+/// `compat: api` if there is none.
 ///
 /// # Errors
 /// A log that is missing, damaged, or without a score.
@@ -184,7 +184,7 @@ impl<'f> Evaluation<'f> {
         score(training_path(&self.save_dir), Some(&self.behavior), self.compat)
     }
 
-    /// Discards the steps since the last end.
+    /// Discards the steps since the end of the last episode.
     pub fn reset(&mut self) {
         self.log = EvaluationLog::default();
         if let Some(film) = &mut self.film {

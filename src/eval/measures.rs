@@ -34,7 +34,7 @@ pub struct Measures {
     pub left_hand: HandMeasures,
     /// Share of the time in which the hands touch each other.
     pub hand_to_hand: f64,
-    /// Share of the time in which at least one hand touches the body, so that both sides feel it.
+    /// Share of the time in which at least one hand touches the body, so both the hand and the body feel it.
     pub double_touch: f64,
     /// Difference of touches of the right and the left hand, over their sum; 0 without touches.
     pub handedness: f64,
@@ -48,7 +48,7 @@ pub struct Measures {
     pub hands_seen: Option<PerEyeAndHand<f64>>,
 }
 
-/// Touches of the own body by a hand with its fingers.
+/// Touches of MIMo's own body by a hand with its fingers.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct HandMeasures {
@@ -250,7 +250,7 @@ fn hand_measures(steps: &TouchSteps, hand: usize, dt: f64, seconds: f64) -> (Han
     (measures, number)
 }
 
-/// Returns how many parts both palms touched, if the record is of self-touch.
+/// Returns the number of parts that both palms touched, if the record is one of self-touch.
 fn parts(npz: &Npz) -> Result<Option<f64>, NpzError> {
     if npz.arrays().all(|array| array.name != "first_touch_geom") {
         return Ok(None);
@@ -262,7 +262,7 @@ fn parts(npz: &Npz) -> Result<Option<f64>, NpzError> {
 struct RecordJoints {
     /// Indices into `qvel`.
     dof: Vec<usize>,
-    /// Right and left ones of a pair, as indices into `dof`.
+    /// The right and the left joint of a pair, as indices into `dof`.
     pairs: Vec<(usize, usize)>,
 }
 

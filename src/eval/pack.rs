@@ -22,7 +22,7 @@ use crate::runs::{EvaluationLog, LogError};
 pub const EPISODES: u64 = 10;
 /// Greatest size of a file that is packed, bytes.
 const FILE: u64 = 1 << 30;
-/// 1980-01-01, the first day that an archive can name.
+/// 1980-01-01, the earliest date that an archive can store.
 const EPOCH: i64 = 315_532_800;
 
 /// An error in packing a submission.
@@ -74,7 +74,7 @@ pub struct PackOptions {
     pub videos: bool,
 }
 
-/// A submission that was packed.
+/// A packed submission.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct PackedSubmission {
@@ -82,7 +82,7 @@ pub struct PackedSubmission {
     pub score: Score,
     /// The names of the files in the archive.
     pub files: Vec<String>,
-    /// A sentence for each unmet requirement of the page and for each oddity.
+    /// A sentence for each requirement of the page that is not met, and for each oddity.
     pub notices: Vec<String>,
 }
 

@@ -50,8 +50,8 @@ pub struct Score {
     pub episodes: usize,
     /// Number of steps in these records.
     pub steps: u64,
-    /// Mean number of parts that both hands touch in an episode, counted separately for each hand; none for `hand_regard`. The score is
-    /// the union of all episodes, which a rare chance touch raises as much as a habit; this mean is not.
+    /// Mean number of parts that both hands touch in an episode, counted separately for each hand; none for `hand_regard`. The score is the union
+    /// over all episodes, which a rare chance touch raises as much as a habit. This mean is not affected in that way.
     pub parts_per_episode: Option<f64>,
     /// The parts of the score.
     pub parts: ScoreParts,
@@ -128,7 +128,7 @@ impl Score {
         Self::new(records.get(..ended).unwrap_or_default(), compat)
     }
 
-    /// Leaves out the geoms that no hand can reach in the scene of `skin`, which must be the log's.
+    /// Leaves out the geoms that no hand can reach in the scene of `skin`, which must be the scene of the log.
     #[must_use]
     pub fn within_reach(mut self, skin: &TouchableGeoms) -> Self {
         if let ScoreParts::SelfTouch { touched } = &mut self.parts {

@@ -41,7 +41,7 @@ impl ImageBuffer for Rgb<'_> {
 pub enum ColorResolution {
     /// That of brightness (4:4:4).
     Full,
-    /// A sample for each two by two pixels below quality 90 (4:2:0), full from there on.
+    /// One sample for two by two pixels below quality 90 (4:2:0), full resolution from 90.
     ByQuality,
 }
 

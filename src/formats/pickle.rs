@@ -47,7 +47,7 @@ pub enum PickleError {
         /// Where it ends.
         at: usize,
     },
-    /// An opcode that logs have no use for.
+    /// An opcode that logs do not use.
     #[error("byte {at}: opcode {opcode:#04x} is not supported: only what logs need is read")]
     Opcode {
         /// Where it stands.
@@ -55,7 +55,7 @@ pub enum PickleError {
         /// The opcode.
         opcode: u8,
     },
-    /// A class or function that logs have no use for. It was not looked up.
+    /// A class or function that logs do not use. It was not looked up.
     #[error("byte {at}: {} is not supported: only what logs need is read", quoted(.name))]
     Global {
         /// Where it stands.
@@ -86,7 +86,7 @@ pub enum PickleError {
 pub struct Array {
     /// Length of each dimension; none for a single number.
     pub shape: Vec<usize>,
-    /// The numbers, the last dimension fastest.
+    /// The numbers; the last dimension varies fastest.
     pub data: Vec<f64>,
 }
 

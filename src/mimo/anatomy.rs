@@ -11,7 +11,7 @@ pub struct BodyKind {
     pub part: Part,
     /// Distance between its touch sensors at `touch_scale: 1`, m.
     pub touch_spacing: f64,
-    /// Whether only MIMo v2's table of touch scales has it, as it has the five fingers and the big toes.
+    /// Whether it is only in MIMo v2's table of touch scales, such as the five fingers and the big toes.
     pub only_v2: bool,
 }
 

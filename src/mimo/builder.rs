@@ -62,7 +62,7 @@ impl SceneBuilder {
         ))
     }
 
-    /// Returns what was added, as the key `scene_extra` has it.
+    /// Returns the additions as a value of the key `scene_extra`.
     pub fn extra(&self) -> &str {
         &self.extra
     }

@@ -58,7 +58,7 @@ pub(crate) fn has_own_scene(behavior: Behavior) -> bool {
 }
 
 /// Writes the document of a BabyBench scene: MIMo at its initial pose, the base, MIMo's settings, the actuators of the
-/// active groups, the scene. Element order fixes all ids, and is the reference's.
+/// active groups, the scene. Element order determines all ids and follows the reference.
 fn babybench_scene(config: &Config) -> String {
     let version = Version::of(config.behavior).name();
     let pose = match config.scene {

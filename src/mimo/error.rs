@@ -13,7 +13,7 @@ pub enum SceneError {
     /// The assets cannot be read or compiled.
     #[error(transparent)]
     Load(#[from] LoadError),
-    /// A custom scene is not as it must be.
+    /// A custom scene breaks a rule.
     #[error(transparent)]
     CustomScene(#[from] CustomSceneError),
     /// MIMo cannot grow to the age of the configuration.

@@ -6,7 +6,7 @@ use crate::math::{column, dot, mat_t_vec};
 use crate::model::Model;
 use crate::physics::{State, Topology, kinematics};
 
-/// The figures of a body that tables of infants list, with all joints at 0.
+/// The figures of a body that are listed in tables of infants, with all joints at 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BodyFigures {
     /// From the soles to the crown, m.

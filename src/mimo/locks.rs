@@ -76,7 +76,7 @@ pub enum LockError {
     },
 }
 
-/// Returns the equality constraint that locks a joint: the one with its name that constrains nothing else.
+/// Returns the equality constraint that locks a joint: the one with the joint's name that constrains nothing else.
 pub fn lock_of(model: &Model, joint: usize) -> Option<usize> {
     let name = model.jnt_name.get(joint)?;
     let lock = model.equality(name)?;

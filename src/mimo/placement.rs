@@ -16,8 +16,7 @@ pub(super) struct GeomOverlap {
     pub depth: f64,
 }
 
-/// Returns the positions (nq) of a scene with its joints where its active constraints hold them: `qpos0`, except among the cubes,
-/// where MIMo sits.
+/// Returns the positions (nq) of a scene with its joints at the angles of its active constraints: `qpos0`, except among the cubes, where MIMo sits.
 pub fn held_posture(model: &Model) -> Vec<f64> {
     let mut qpos = model.qpos0.clone();
     for (kind, _) in model

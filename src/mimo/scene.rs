@@ -20,7 +20,7 @@ const HEAD: &str = "head";
 
 /// Loads and compiles the scene of a configuration from `assets`, with MIMo at his age.
 ///
-/// A MIMo of another size than the original is moved up or down until his lowest point is where the original's is, both in the posture in
+/// A MIMo whose size differs from the original's is moved up or down until his lowest point is where the original's is, both in the posture in
 /// which the scene holds them. A custom scene is one of the assets, or otherwise a file of the system; see
 /// [`scene_assets`](crate::mimo::scene_assets).
 ///
@@ -57,7 +57,7 @@ pub fn build_scene(
     Ok(model)
 }
 
-/// Returns the greatest torques of MIMo at the age of a configuration, by both settings of the key `strength`; empty without an age.
+/// Returns the greatest torques of MIMo at the age of a configuration, under both settings of the key `strength`; empty without an age.
 ///
 /// # Errors
 /// As [`build_model`].
@@ -68,7 +68,7 @@ pub fn strength_table(config: &Config, assets: &dyn AssetSource) -> Result<Vec<S
     }
 }
 
-/// A document and what it includes.
+/// A document and its includes.
 #[derive(Clone, Copy)]
 pub(super) struct SceneSource<'a> {
     pub document: &'a str,
@@ -195,7 +195,7 @@ fn grow_other(draft: &mut Draft, growth: Option<&Growth>) -> Result<(), SceneErr
     Ok(grown?)
 }
 
-/// Tolerance of the overlap of two parts over that at the same age without measurements, m.
+/// Tolerance of the overlap of two parts, beyond that at the same age without measurements, m.
 const OVERLAP: f64 = 0.003;
 
 /// Returns two parts of MIMo that overlap more than usual, if any.

@@ -11,7 +11,7 @@ pub enum Mark {
     Measured,
     /// Taken from an abstract or from a secondary source.
     Seen,
-    /// Not measured: general knowledge, or a design of this project.
+    /// Not measured: general knowledge, or a choice of this project.
     Unsourced,
 }
 

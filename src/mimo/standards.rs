@@ -1,4 +1,4 @@
-//! Growth of infants by the World Health Organization, for comparison with MIMo's.
+//! Growth of infants according to the World Health Organization, for comparison with MIMo's.
 
 /// The distribution of a measurement at an age, as L, M and S of T. J. Cole's method: M is the median, S the coefficient of variation,
 /// L the power that makes it normal.

@@ -1,4 +1,4 @@
-//! MIMo 3, whose chest is a body of its own with two joints.
+//! MIMo 3, whose chest is a separate body with two joints.
 //!
 //! The folder `mimo3` of the assets has the documents in which MIMo 3 differs from MIMo 2. They replace documents of the same
 //! name, so that scenes, rooms and tasks include the same files for both. Everything else is MIMo 2's.
@@ -92,7 +92,7 @@ impl<A: AssetSource> AssetSource for VersionAssets<A> {
     }
 }
 
-/// Names geoms without a name after their body and their number in it, from 1: `geom:left_hand2`. `None` if the document is not XML.
+/// Names unnamed geoms after their body and their number in it, from 1: `geom:left_hand2`. `None` if the document is not XML.
 fn with_geom_names(document: &[u8]) -> Option<Vec<u8>> {
     let text = std::str::from_utf8(document).ok()?;
     let mut reader = Reader::from_str(text);

@@ -13,7 +13,7 @@ use super::schema::Element;
 use super::table::{Table, table};
 use super::words::{AutoBool, BIASES, DYNAMICS, GAINS, TRI};
 
-/// The most parameters that an element may write: MuJoCo has room for no more.
+/// Maximum number of parameters of an element, as in MuJoCo.
 const PARAMETERS: usize = 10;
 
 /// Returns parameters that are 0 except for the first.
@@ -44,7 +44,7 @@ table! {
 }
 
 table! {
-    /// Attributes of all actuators but adhesion: their transmission.
+    /// Attributes of all actuators except adhesion: their transmission.
     group Target {
         "joint" joint: Option<String> = None, TEXT, own, transmission, "Joint that it drives.";
         "jointinparent" jointinparent: Option<String> = None, TEXT, own, transmission, "Joint that it drives, in place of `joint`: the same for the joints that actuators may have here.";
@@ -80,7 +80,7 @@ table! {
 }
 
 table! {
-    /// The attribute of all actuators but dampers.
+    /// The attribute of all actuators except dampers.
     group Control {
         "ctrllimited" limited: AutoBool = AutoBool::Auto, TRI, "Whether `ctrlrange` is enforced.";
     }
@@ -169,7 +169,7 @@ const NO_CRANK: &str = "slidersite and cranklength are for slider-cranks: give c
 const NO_SITE: &str = "refsite needs the attribute site";
 const NEGATIVE_DAMPING: &str = "the ctrlrange of a damper must not be negative";
 
-/// Checks that the attributes of an actuator say of one thing how it acts on it.
+/// Checks that the attributes of an actuator name exactly one target.
 fn check_target(e: &Element) -> Result<(), &'static str> {
     let given = |names: &[&str]| e.values().any(|(name, _)| names.contains(&name));
     let elsewhere = given(&["joint", "jointinparent", "tendon", "site", "body"]);

@@ -13,7 +13,7 @@ use crate::model::{DynType, ObjType};
 
 /// An element that refers to others. `<attach>` leaves it out if those are not copied with it.
 pub(super) trait Reference: Clone {
-    /// Whether one of two names, or some names of a tendon, may be those of things of the document itself.
+    /// Whether one of two names, or some names of a tendon, may belong to elements of the document itself.
     const LOOSE: bool;
 
     /// Returns the place in the text.
@@ -31,8 +31,8 @@ pub(super) trait Reference: Clone {
         None
     }
 
-    /// Adds `suffix` to the names that it refers to, where that names something, as MuJoCo 3.3.0 does for a copy of the element; returns
-    /// whether it makes the copy. With an empty suffix the result tells whether everything that the element refers to exists.
+    /// Adds `suffix` to the names that it refers to, where the result names something, as MuJoCo 3.3.0 does for a copy of the element; returns
+    /// whether MuJoCo makes the copy. With an empty suffix the result tells whether everything that the element refers to exists.
     fn readdress(&mut self, suffix: &str, known: &NameTable) -> bool {
         let mut names = self.names();
         names.retain(|(_, name)| !name.is_empty());
@@ -296,7 +296,7 @@ fn framed(of: FrameObject) -> ElementKind {
     }
 }
 
-/// The numbers of coordinates that the elements read so far need.
+/// The numbers of coordinates of the elements read so far.
 #[derive(Clone, Copy, Default)]
 pub(super) struct Sizes {
     pub nq: usize,
@@ -318,7 +318,7 @@ impl Sizes {
         }
     }
 
-    /// Returns how many numbers a keyframe has.
+    /// Returns the number of values of a keyframe.
     fn numbers(&self) -> usize {
         self.nq + self.nv + self.na + self.nu + 7 * self.nmocap
     }
@@ -339,7 +339,7 @@ impl Sizes {
     }
 }
 
-/// Returns how many numbers the keyframes of a document have.
+/// Returns the number of values of a document's keyframes.
 pub(super) fn said(document: &TypedDocument) -> usize {
     document.keys.len() * Sizes::of(document).numbers()
 }
@@ -360,7 +360,7 @@ pub(super) fn hanging(body: &Body) -> impl Iterator<Item = (ElementKind, &String
 }
 
 impl CopyCount {
-    /// Counts all of a model.
+    /// Counts everything in a model.
     pub fn of(from: &TypedDocument) -> Self {
         let hung: usize = from
             .bodies

@@ -17,8 +17,8 @@ pub(super) enum ElementKind {
     Actuator,
 }
 
-/// A keyframe of an attached model, with its name in the document. Its values are kept with the joints, actuators and bodies that they
-/// belong to; all others are those of `qpos0`.
+/// A keyframe of an attached model, with its name in the document. Its values are stored with the joints, actuators and bodies to which they belong;
+/// all others are those of `qpos0`.
 #[derive(Clone)]
 pub(super) struct AttachedKeyframe {
     pub at: usize,
@@ -30,14 +30,14 @@ pub(super) struct AttachedKeyframe {
 /// and `mquat` of a mocap body.
 pub(super) type KeyframeValues = BTreeMap<String, [Vec<f64>; 2]>;
 
-/// A reference to an element that `<attach>` did not copy, so the element that has the reference was not copied, either.
+/// A reference to an element that `<attach>` did not copy, so the element with the reference was not copied either.
 pub(super) struct MissingReference {
     pub at: usize,
     pub thing: ElementKind,
     pub name: String,
 }
 
-/// The amount of work done for `<attach>`, which the limits bound: a few bytes of text may ask for another copy of a whole model.
+/// The amount of work done for `<attach>`, which the limits bound: a few bytes of text may request another copy of a whole model.
 #[derive(Clone, Copy, Default)]
 pub(super) struct CopyCount {
     pub elements: usize,

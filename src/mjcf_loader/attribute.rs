@@ -1,4 +1,4 @@
-//! Attributes: the values that one may hold, how its text becomes a value, and how a value reaches a field of the typed document.
+//! Attributes: their allowed values, how text becomes a value, and how a value reaches a field of the typed document.
 
 mod store;
 
@@ -50,7 +50,7 @@ pub(super) enum AttributeKind {
     Indices,
     /// Two whole numbers.
     Ints,
-    /// Text that nothing copies; its length is limited only by that of a document.
+    /// Text that is never copied; its length is limited only by that of a document.
     LongText,
     /// A number of bytes, with a letter for its unit, or -1.
     Memory,
@@ -189,7 +189,7 @@ impl<T: Copy> KeywordField<T> for Option<T> {
     }
 }
 
-/// Groups of attributes that exclude each other: an element may have one of a group.
+/// Groups of attributes that exclude each other: an element may have one attribute of a group.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum Alternatives {
     Orientation,
@@ -366,7 +366,7 @@ pub(super) enum Value {
     Letters([u8; 3]),
 }
 
-/// Stands also where `fromto` or another orientation takes the place of the quaternion.
+/// Also used where `fromto` or another orientation replaces the quaternion.
 pub(super) const ZERO_QUAT: &str = "a zero quaternion is not an orientation";
 
 fn whole(attribute: &'static str, text: &str, min: i64, max: i64) -> Result<i64, ErrorKind> {
@@ -452,7 +452,7 @@ fn word(attribute: &'static str, text: &str, allowed: &'static [&'static str]) -
     })
 }
 
-/// Reads a number or an infinity. MuJoCo takes one that is written so, and no digits that amount to it.
+/// Reads a number or an infinity. MuJoCo accepts an infinity by name, but not digits that amount to one.
 fn bound(attribute: &'static str, text: &str, limit: f64) -> Result<f64, ErrorKind> {
     match text.parse::<f64>() {
         Ok(value) if value.is_infinite() && !text.contains(|c: char| c.is_ascii_digit()) => Ok(value),

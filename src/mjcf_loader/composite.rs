@@ -65,7 +65,7 @@ table! {
     }
 }
 
-/// Returns the attributes of a table that are called so.
+/// Returns the attributes of a table with the given names.
 const fn pick<const N: usize>(table: &'static [Attr], names: [&str; N]) -> [Attr; N] {
     let mut picked = [table[0]; N];
     let mut index = 0;
@@ -89,7 +89,7 @@ const fn same(a: &str, b: &str) -> bool {
     at == a.len() && at == b.len()
 }
 
-/// The attributes of geoms, sites and joints that those of a composite have, too.
+/// The attributes of geoms, sites and joints that those of a composite also have.
 pub(super) static GEOM: [Attr; 17] = pick(
     Geom::ATTRIBUTES[0],
     [
@@ -130,10 +130,10 @@ pub(super) static JOINT: [Attr; 11] = pick(
     ],
 );
 
-/// The most bodies of a cable, whose chain costs memory with the square of its length.
+/// Maximum number of bodies of a cable; the memory of its chain grows with the square of its length.
 pub(super) const MAX_BODIES: usize = 1000;
 
-/// Course of x, y or z along a curve.
+/// How x, y or z varies along a curve.
 #[derive(Clone, Copy)]
 enum Shape {
     Line,
@@ -251,12 +251,12 @@ fn single(v: f64) -> f64 {
     f64::from(v as f32)
 }
 
-/// Returns the way from one point to another.
+/// Returns the vector from one point to another.
 fn between(from: &Vec3, to: &Vec3) -> Vec3 {
     std::array::from_fn(|k| f64::from(to[k] as f32 - from[k] as f32))
 }
 
-/// Turns the normal of a curve along to the next edge, and returns the orientation of that.
+/// Carries the normal of a curve on to the next edge, and returns the orientation of that edge.
 fn turned(normal: &mut Vec3, edge: Vec3, previous: Vec3, next: Vec3, first: bool) -> Quat {
     let mut tangent = edge;
     normalize(&mut tangent);
@@ -288,7 +288,7 @@ pub(super) struct Prototypes {
 }
 
 impl Prototypes {
-    /// Those of MuJoCo, which default classes do not change.
+    /// MuJoCo's own values, which default classes do not change.
     pub fn initial() -> Self {
         Self {
             geom: Geom::initial(),

@@ -78,7 +78,7 @@ table! {
 }
 
 table! {
-    /// `<custom><tuple>`: a list of things for programs, which is checked and not kept.
+    /// `<custom><tuple>`: a list of elements for programs, which is checked but not stored.
     element Tuple {
         also elements: Vec<TupleElement> = Vec::new();
         "name" name: String = String::new(), TEXT, required, "Name.";
@@ -86,7 +86,7 @@ table! {
 }
 
 impl Tuple {
-    /// Reads the element with its list.
+    /// Reads the element and its list.
     pub fn hold(e: &Element) -> Self {
         let elements = e.children.iter().map(TupleElement::read).collect();
         Self {

@@ -174,7 +174,7 @@ pub(super) struct ReplicaIndex {
 }
 
 table! {
-    /// `<replicate>` in a body: copies of its content, each placed relative to the one before. Names get the number of the copy.
+    /// `<replicate>` in a body: copies of its content, each placed relative to the one before. The number of the copy is appended to names.
     element Replicate {
         "count" count: i32 = 0, int(i32::MIN as i64, i32::MAX as i64), required, "Number of copies; none where it is not positive.";
         "sep" sep: String = String::new(), TEXT, "What stands between a name and the number of the copy.";
@@ -205,7 +205,7 @@ table! {
 /// The content of a document.
 pub(super) struct TypedDocument {
     pub model: String,
-    /// Settings of the document and of the models that it names, as the tree lists them; none in a model.
+    /// Settings of the document and of the models that it names, in the order of the tree; none in a model.
     pub compilers: Vec<Compiler>,
     pub lengthrange: LengthRange,
     pub option: Options,
@@ -244,7 +244,7 @@ pub(super) struct TypedDocument {
     pub tuples: Vec<Tuple>,
     pub texts: Vec<Text>,
     pub keys: Vec<Key>,
-    /// Keyframes that came along with bodies of other models or with copies; they follow the document's own.
+    /// Keyframes that came with bodies of other models or with copies; they follow the document's own.
     pub moved_keys: Vec<AttachedKeyframe>,
 }
 

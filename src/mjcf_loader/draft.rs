@@ -1,4 +1,4 @@
-//! An MJCF document that a program may still change.
+//! An MJCF document that a program can still change.
 
 use crate::assets::AssetSource;
 use crate::limits::Limits;
@@ -40,7 +40,7 @@ pub struct Draft {
 pub struct DraftGeom<'a> {
     /// Shape.
     pub kind: GeomType,
-    /// Size as MJCF has it: radius, half lengths, m.
+    /// Size as in MJCF: radius, half lengths, m.
     pub size: &'a mut Vec3,
     /// Position in the body, m.
     pub pos: &'a mut Vec3,
@@ -80,7 +80,7 @@ impl DraftActuator<'_> {
         self.servo
     }
 
-    /// Multiplies the actuator's force: the gear of a motor, or gain and bias of a servo, because its gear would change its angles, too.
+    /// Multiplies the actuator's force: the gear of a motor, or gain and bias of a servo, because its gear would also change its angles.
     pub fn strengthen(&mut self, factor: f64) {
         if self.servo {
             self.gainprm
@@ -127,7 +127,7 @@ impl Draft {
         Self::read_str_with(xml, virtual_path, source, &Limits::default())
     }
 
-    /// Reads a document as [`Draft::read_str`] does, within other limits than the default ones.
+    /// Reads a document as [`Draft::read_str`] does, within the given limits.
     ///
     /// # Errors
     /// As [`super::load`].
@@ -273,7 +273,7 @@ impl Draft {
             .map(|material| &mut material.texture)
     }
 
-    /// Lists the names of the joints of a body and of all below it.
+    /// Lists the names of the joints of a body and of all bodies below it.
     pub fn joints_below(&self, body: &str) -> Vec<String> {
         let bodies = &self.document.bodies;
         // a parent comes before its children
@@ -295,7 +295,7 @@ impl Draft {
     }
 }
 
-/// Returns whether a whole name is a prefix and a name.
+/// Returns whether a full name consists of a prefix and a name.
 fn is_called(whole: &str, prefix: &str, name: &str) -> bool {
     whole.strip_prefix(prefix) == Some(name)
 }

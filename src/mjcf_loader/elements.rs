@@ -1,5 +1,4 @@
-//! The MJCF that is understood: which element may stand in which, and the tables of its attributes. What is not here is an
-//! error.
+//! The supported MJCF: the elements that each element may contain, and the tables of its attributes. Anything else is an error.
 
 use crate::model::{Flags, Options, SensorType, Statistic};
 
@@ -116,7 +115,7 @@ static BODY: Rule = rule(
         &FLEXCOMP,
     ],
 );
-/// In the world it can hold the elements of the world only, which the reader checks.
+/// In the world it can hold only the elements of the world, which the reader checks.
 static FRAME: Rule = rule(
     "frame",
     &[BodyFrame::ATTRIBUTES],

@@ -54,7 +54,7 @@ table! {
 }
 
 table! {
-    /// Attributes of a flex that `<flexcomp>` has, too.
+    /// Attributes of a flex that `<flexcomp>` also has.
     group FlexLook {
         "group" group: i32 = 0, int(MIN_GROUP, MAX_GROUP), "Visual group; up to 2 are drawn.";
         "dim" dim: usize = 2, int(1, 3), "1 for lines, 2 for triangles, 3 for tetrahedra.";

@@ -41,7 +41,7 @@ table! {
 }
 
 table! {
-    /// `<freejoint>`. It takes no defaults: only `<joint type="free">` has a class.
+    /// `<freejoint>`. It has no defaults: only `<joint type="free">` has a class.
     element FreeJoint {
         "name" name: String = String::new(), TEXT, own, "Name.";
         "group" group: i32 = 0, int(MIN_GROUP, MAX_GROUP), "Visual group.";

@@ -1,4 +1,4 @@
-//! The MJCF that is understood, as a list for people.
+//! The supported MJCF, as a list for readers.
 
 use super::attribute::{Attr, AttributeKind, Sign};
 use super::elements::MUJOCO;

@@ -14,7 +14,7 @@ pub(super) enum MeshInertia {
     Convex,
     /// Those of the enclosed volume; the surface must be closed.
     Exact,
-    /// Those of all pyramids over triangles, counted positive wherever they are.
+    /// Those of all pyramids over triangles, counted as positive regardless of orientation.
     Legacy,
     /// Those of the surface.
     Shell,

@@ -1,4 +1,4 @@
-//! MJCF text -> [`Spec`], which `compile` of mjcf-sim-physics turns into a `Model`.
+//! Reads MJCF text into a [`Spec`], which `compile` of mjcf-sim-physics turns into a `Model`.
 //!
 //! Three stages, each its own type: a tree of XML elements with includes spliced in, a typed document with default
 //! classes applied and references by name, and the [`Spec`] with MuJoCo 3.3.0's ids and units. Nothing here knows
@@ -84,7 +84,7 @@ pub fn load(source: &dyn AssetSource, path: &str) -> Result<Spec, LoadError> {
     load_with(source, path, &Limits::default())
 }
 
-/// Loads the document at `path` in `source` within other limits than the default ones.
+/// Loads the document at `path` in `source` within the given limits.
 ///
 /// # Errors
 /// As [`load`].
@@ -106,7 +106,7 @@ pub fn load_str(xml: &str, virtual_path: &str, source: &dyn AssetSource) -> Resu
     load_str_with(xml, virtual_path, source, &Limits::default())
 }
 
-/// Loads a document given as text, as [`load_str`] does, within other limits than the default ones.
+/// Loads a document given as text, as [`load_str`] does, within the given limits.
 ///
 /// # Errors
 /// As [`load`].

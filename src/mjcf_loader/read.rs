@@ -1,4 +1,4 @@
-//! Checked elements -> typed document: sections in MuJoCo's order, default classes applied.
+//! Turns checked elements into the typed document: sections in MuJoCo's order, default classes applied.
 
 mod attach;
 mod cable;
@@ -98,7 +98,7 @@ impl<'t> Classes<'t> {
             .try_for_each(|nested| self.read(nested, Some(&name)))
     }
 
-    /// Adds the class of one section. It is kept out of `read`, which recurses: a class is large, and the stack is not.
+    /// Adds the class of one section. It is separate from `read`, which recurses: a class is large, and stack space is limited.
     #[inline(never)]
     fn declare(&mut self, section: &Element, parent: Option<&str>) -> Result<String, LoadError> {
         let given = section.text("class").unwrap_or_default();
@@ -135,7 +135,7 @@ impl<'t> Classes<'t> {
         self.by_name.get(name).ok_or_else(|| self.unknown(element, name))
     }
 
-    /// Returns the error of an element that names a class that does not exist.
+    /// Returns the error for an element that names a nonexistent class.
     fn unknown(&self, element: &Element, name: &str) -> LoadError {
         let nearest = nearest(name, self.by_name.keys().map(String::as_str)).map(str::to_owned);
         let name = name.to_owned();
@@ -245,7 +245,7 @@ fn read_model(parts: &Sources, index: usize) -> Result<TypedDocument, LoadError>
     Ok(document)
 }
 
-/// Adds a model that `<attach>` may take bodies of.
+/// Adds a model from which `<attach>` may take bodies.
 fn add_model(parts: &Sources, index: usize, e: &Element, document: &mut TypedDocument) -> Result<(), LoadError> {
     let model = read_model(parts, index)?;
     let given = ModelAsset::read(e).name;
@@ -259,7 +259,7 @@ fn add_model(parts: &Sources, index: usize, e: &Element, document: &mut TypedDoc
     Ok(())
 }
 
-/// Adds an element of a section that lists its elements one after another.
+/// Adds an element of a section that is a plain list of elements.
 fn add(e: &Element, section: &str, classes: &Classes, document: &mut TypedDocument) -> Result<(), LoadError> {
     let class = || classes.of(e, MAIN);
     let wrong = |what| classes.error(e, ErrorKind::Invalid(what));

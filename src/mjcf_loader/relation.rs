@@ -101,7 +101,7 @@ table! {
 }
 
 impl Equality {
-    /// Reads the element with the elements that it holds. An error describes the fault.
+    /// Reads the element with its children. An error describes the fault.
     pub fn hold(&mut self, e: &Element) -> Result<(), &'static str> {
         self.apply(e);
         self.held = match e.name {
@@ -187,7 +187,7 @@ impl SpringLength {
 }
 
 impl AttributeField for SpringLength {
-    /// Stores both lengths; a single one is both.
+    /// Stores both lengths; a single number sets both.
     fn store(&mut self, value: &Value) {
         if let Value::Reals(lengths) = value {
             match lengths[..] {

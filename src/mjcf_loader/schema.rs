@@ -1,4 +1,4 @@
-//! Checks a tree against the elements and attributes that are understood.
+//! Checks a tree against the supported elements and attributes.
 
 use super::attribute::{Alternatives, Attr, Value};
 use super::error::{ErrorKind, LoadError};
@@ -22,7 +22,7 @@ impl Rule {
     }
 }
 
-/// The name of the sections of default classes. Attributes that an element must own have no place in them.
+/// The name of the sections of default classes. Attributes that an element must give itself are not allowed in them.
 pub(super) const DEFAULT: &str = "default";
 
 /// A checked element.
@@ -60,7 +60,7 @@ impl Element {
         self.values.iter().map(|(name, value)| (*name, value))
     }
 
-    /// Returns an attribute that is text, if it is given.
+    /// Returns an attribute as text, if it is given.
     pub fn text(&self, name: &str) -> Option<&str> {
         self.values().find_map(|(other, value)| match value {
             Value::Text(text) if other == name => Some(text.as_str()),
@@ -69,7 +69,7 @@ impl Element {
     }
 }
 
-/// Checks an element and all below it. Recursion is bounded by the depth limit of the parser.
+/// Checks an element and everything below it. Recursion is bounded by the depth limit of the parser.
 pub(super) fn check(tree: &Tree, root: usize, rule: &'static Rule) -> Result<Element, LoadError> {
     check_below(tree, root, rule, false)
 }
@@ -88,7 +88,7 @@ fn check_below(tree: &Tree, at: usize, rule: &'static Rule, class: bool) -> Resu
     Ok(element)
 }
 
-/// Returns whether an element may hold another once only.
+/// Returns whether an element may contain another only once.
 fn once(parent: &str, child: &str) -> bool {
     match parent {
         "visual" | "option" | "compiler" => true,
@@ -139,7 +139,7 @@ fn child_rule(tree: &Tree, child: usize, rule: &'static Rule) -> Result<&'static
     })
 }
 
-/// Returns the attribute that is meant by one of a node, with its value; `None` where it is of a later version and changes nothing.
+/// Returns the attribute that a name in a node stands for, with its value; `None` if it belongs to a later version and changes nothing.
 fn meant<'a>(
     node: &Node,
     rule: &'static Rule,
@@ -177,7 +177,7 @@ fn meant<'a>(
     }
 }
 
-/// Checks an element without its children. It is apart from `check_below` so that the recursion needs little stack.
+/// Checks an element without its children. It is separate from `check_below` so that the recursion needs little stack.
 #[inline(never)]
 fn check_one(tree: &Tree, at: usize, rule: &'static Rule, class: bool) -> Result<Element, LoadError> {
     let node = &tree.nodes[at];

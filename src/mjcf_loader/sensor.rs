@@ -67,14 +67,14 @@ table! {
 }
 
 table! {
-    /// The body of a sensor of a body and those below it.
+    /// The body of a sensor that covers a body and those below it.
     group OfSubtree {
         "body" body: String = String::new(), TEXT, required, "Body that it measures, with all below it.";
     }
 }
 
 table! {
-    /// The object of a sensor of a frame, and its reference.
+    /// The object of a frame sensor, and its reference.
     group OfFrame {
         "objtype" objtype: FrameObject = FrameObject::Body, FRAMES, required, "AttributeKind of the object; `body` for the frame of its centre of mass, `xbody` for its own.";
         "objname" objname: String = String::new(), TEXT, required, "Name of the object.";
@@ -82,7 +82,7 @@ table! {
 }
 
 table! {
-    /// In which frame a sensor of a frame measures.
+    /// The frame in which a frame sensor measures.
     group InFrame {
         "reftype" reftype: Option<FrameObject> = None, FRAMES, "AttributeKind of the object in whose frame it measures; else in that of the world.";
         "refname" refname: Option<String> = None, TEXT, "Name of that object.";
@@ -90,7 +90,7 @@ table! {
 }
 
 table! {
-    /// The site and the camera of a sensor of a camera's picture.
+    /// The site and the camera of a `camprojection` sensor.
     group InPicture {
         "site" site: String = String::new(), TEXT, required, "Site that is seen.";
         "camera" camera: String = String::new(), TEXT, required, "Camera that sees it.";
@@ -120,7 +120,7 @@ const DATA: Keywords<DataType> = words! {
     "quaternion" => DataType::Quaternion,
 };
 
-/// Kinds of objects that a sensor of a program's own may name.
+/// Kinds of objects that a user-defined sensor may name.
 const OBJECTS: Keywords<ObjType> = words! {
     "body" => ObjType::Body,
     "xbody" => ObjType::XBody,

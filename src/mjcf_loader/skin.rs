@@ -1,4 +1,4 @@
-//! The tables of skins: surfaces that bodies pull along.
+//! The tables of skins: surfaces that follow bodies.
 
 use super::attribute::Sign::Any;
 use super::attribute::{AttributeKind, TEXT, int, real, reals};
@@ -22,11 +22,11 @@ table! {
     }
 }
 
-/// The name of the elements that a limit on skins counts.
+/// The name of the elements that count towards a limit on skins.
 pub(super) const SKIN_ELEMENTS: &str = "vertices, texture coordinates, faces and weights of skins";
 
 impl Skin {
-    /// Returns the number of elements that the document itself gives it.
+    /// Returns the number of elements given in the document itself.
     pub fn elements(&self) -> usize {
         let weights: usize = self.bones.iter().map(|bone| bone.vertid.len()).sum();
         self.vertex.len() / 3 + self.texcoord.len() / 2 + self.face.len() / 3 + weights

@@ -40,7 +40,7 @@ impl Locations {
         self.tree.error(self.tendons[tendon], ErrorKind::Invalid(message))
     }
 
-    /// Returns the limits that the document was read within.
+    /// Returns the limits within which the document was read.
     pub fn limits(&self) -> &Limits {
         &self.tree.limits
     }

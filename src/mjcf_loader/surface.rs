@@ -1,4 +1,4 @@
-//! Tables of how things look: textures and materials.
+//! Tables for appearance: textures and materials.
 
 use crate::model::{Builtin, Mark, TextureType};
 
@@ -63,7 +63,7 @@ table! {
 }
 
 impl Material {
-    /// Reads the element with its layers. The last layer of colours is its texture.
+    /// Reads the element with its layers. Its texture is the last layer of colours.
     pub fn look(&mut self, e: &Element) {
         self.apply(e);
         self.layers = e.children.iter().map(Layer::read).collect();

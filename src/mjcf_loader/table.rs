@@ -1,4 +1,4 @@
-//! One table per element. A line of a table is an attribute, and everything about it: name, field, default, form, meaning.
+//! One table per element. A line of a table describes an attribute: name, field, default, form, meaning.
 //!
 //! ```text
 //! table! {
@@ -22,16 +22,16 @@ use super::schema::Element;
 
 /// A struct whose fields are the attributes of an element.
 pub(super) trait Table: Sized {
-    /// The attributes, those of the table itself first. Of two with one name the first counts.
+    /// The attributes, those of the table itself first. Of two with the same name, the first counts.
     const ATTRIBUTES: &'static [&'static [Attr]];
 
-    /// Returns the values of attributes that are not given.
+    /// Returns the default values of the attributes.
     fn initial() -> Self;
 
     /// Visits the field that an attribute fills, if it has one; returns whether the table has the attribute.
     fn field(&mut self, name: &str, visit: FieldVisitor) -> bool;
 
-    /// Returns how a document would write the default of an attribute.
+    /// Returns the default of an attribute as a document would write it.
     fn default_of(name: &str) -> String {
         let mut text = String::new();
         Self::initial().field(name, &mut |field| text = field.show());

@@ -1,4 +1,4 @@
-//! Shared by the tables: words with their values, bounds, defaults, and poses as they are written.
+//! Shared by the tables: words with their values, bounds, defaults, and poses as written.
 
 use crate::math::Vec3;
 use crate::model::{BiasType, Builtin, CamLight, DynType, GainType, GeomType, JointType, Mark, TextureType};
@@ -19,7 +19,7 @@ pub(super) const MAX_SKIN_GROUP: i64 = 5;
 /// Bits of collision. The highest is the sign.
 pub(super) const MIN_BITS: i64 = i32::MIN as i64;
 pub(super) const MAX_BITS: i64 = i32::MAX as i64;
-/// The greatest number of keyframes that a document may ask for without giving them.
+/// Maximum number of keyframes that a document may request without defining them.
 pub(super) const MAX_KEYS: i64 = 10_000;
 pub(super) const MAX_COUNT: i64 = 1 << 30;
 pub(super) const MAX_PIXELS: i64 = 16384;
@@ -96,7 +96,7 @@ pub(super) const GAINS: Keywords<GainType> =
 pub(super) const BIASES: Keywords<BiasType> =
     words! { "none" => BiasType::None, "affine" => BiasType::Affine, "muscle" => BiasType::Muscle };
 
-/// An orientation as the document gives it.
+/// An orientation as written in the document.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Orientation {
     Quat([f64; 4]),

@@ -1,4 +1,4 @@
-//! XML text -> one tree, with includes spliced in, and the trees of the models that it names. Knows nothing of MJCF but `include` and
+//! Reads XML text into one tree, with includes spliced in, and into the trees of the models that it names. Knows nothing of MJCF except `include` and
 //! `<asset><model>`.
 
 mod parser;
@@ -12,7 +12,7 @@ use crate::limits::Limits;
 use crate::math::order;
 use parser::Parser;
 
-/// An element. Children may come from other files, the parent is the one in its own file.
+/// An element. Children may come from other files; the parent is in the same file.
 #[derive(Clone, Debug)]
 pub struct Node {
     /// Name of the element.
@@ -43,10 +43,10 @@ impl Node {
 pub struct Tree {
     /// The elements; the root of the document is the first.
     pub nodes: Vec<Node>,
-    /// Elements that this document may contain.
+    /// Maximum number of elements in this document.
     pub limits: Limits,
     files: Vec<String>,
-    /// The document and the models that it names; the elements of each follow those of the one before.
+    /// The document and the models that it names; the elements of each follow those of the previous one.
     models: Vec<ModelFile>,
 }
 
@@ -169,8 +169,8 @@ impl Tree {
         }
     }
 
-    /// Appends the element `root` and all below it to `out`, one tag a line. `replace` is told an element, an
-    /// attribute and its value, for which it may give another one.
+    /// Appends the element `root` and everything below it to `out`, one tag per line. `replace` gets an element, an attribute and its value, and may
+    /// return another value.
     pub fn write<E>(
         &self,
         root: usize,
@@ -223,7 +223,7 @@ fn indent(out: &mut String, depth: usize) {
     out.extend(std::iter::repeat_n("  ", depth));
 }
 
-/// Returns the text of a file: UTF-8, or Latin-1 if its XML declaration names that.
+/// Returns the text of a file: UTF-8, or Latin-1 if its XML declaration says so.
 pub(super) fn text_of(bytes: &[u8]) -> Result<Cow<'_, str>, ErrorKind> {
     if let Ok(text) = std::str::from_utf8(bytes) {
         return Ok(text.into());

@@ -17,7 +17,7 @@ pub enum TrnType {
     Body,
 }
 
-/// The dynamics of an actuator's activation, from which the force follows in place of the control.
+/// The dynamics of an actuator's activation, which replaces the control in the force.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum DynType {
     /// No activation: the force follows from the control.
@@ -28,7 +28,7 @@ pub enum DynType {
     Filter,
     /// The same filter, integrated exactly.
     FilterExact,
-    /// A muscle's: a filter of the control, within 0 and 1, with time constants that depend on the activation: `dynprm` is that of
+    /// A muscle's dynamics: a filter of the control, between 0 and 1, with time constants that depend on the activation: `dynprm` is that of
     /// activation and of deactivation, s, and the width of the transition between them.
     Muscle,
 }

@@ -75,18 +75,18 @@ arrays! {
     body_parentid: Vec<usize>,
     /// Root of each body's tree (nbody), by id: the ancestor that is a child of the world; 0 for the world.
     body_rootid: Vec<usize>,
-    /// Body that each body is rigidly attached to (nbody), by id: itself if it has joints, else the one of its parent; 0 for bodies
+    /// Body to which each body is rigidly attached (nbody), by id: itself if it has joints, otherwise that of its parent; 0 for bodies
     /// that never move by joints.
     body_weldid: Vec<usize>,
-    /// First joint of each body (nbody), by id. Without joints the id of the next joint, where MuJoCo has -1.
+    /// First joint of each body (nbody), by id. Without joints, the id of the next joint, where MuJoCo has -1.
     body_jntadr: Vec<usize>,
     /// Number of joints of each body (nbody).
     body_jntnum: Vec<usize>,
-    /// First degree of freedom of each body (nbody). Without any the number of the next one, where MuJoCo has -1.
+    /// First degree of freedom of each body (nbody). Without any, the number of the next one, where MuJoCo has -1.
     body_dofadr: Vec<usize>,
     /// Number of degrees of freedom of each body (nbody).
     body_dofnum: Vec<usize>,
-    /// First geom of each body (nbody), by id. Without geoms the id of the next geom, where MuJoCo has -1.
+    /// First geom of each body (nbody), by id. Without geoms, the id of the next geom, where MuJoCo has -1.
     body_geomadr: Vec<usize>,
     /// Number of geoms of each body (nbody).
     body_geomnum: Vec<usize>,
@@ -108,7 +108,7 @@ arrays! {
     body_sameframe: Vec<SameFrame>,
     /// Row of each body in `mocap_pos` and `mocap_quat` (nbody); `None` if it is not a mocap body, where MuJoCo has -1.
     body_mocapid: Vec<Option<usize>>,
-    /// Gravity compensation of each body (nbody), as a share of its weight, no unit; 0 for none.
+    /// Gravity compensation of each body (nbody), as a share of its weight; 0 for none.
     body_gravcomp: Vec<f64>,
     /// Mean inverse weight of each body at `qpos0` (nbody, 2): translation, 1/kg, and rotation, 1/(kg m^2).
     body_invweight0: Vec<[f64; 2]>,
@@ -132,7 +132,7 @@ arrays! {
     /// Whether `jnt_range` limits each joint (njnt).
     jnt_limited: Vec<bool>,
     /// Lower and upper limit of each joint (njnt, 2): rad for hinges, m for slides; of a ball joint the second is its greatest angle,
-    /// rad. A range that does not limit stays as the document has it.
+    /// rad. A range without effect stays as in the document.
     jnt_range: Vec<[f64; 2]>,
     /// Distance to its limit below which each joint's limit becomes a constraint (njnt), rad or m.
     jnt_margin: Vec<f64>,
@@ -206,11 +206,11 @@ arrays! {
     geom_conaffinity: Vec<u32>,
     /// Dimension of each geom's contacts (ngeom): 1 frictionless, 3 sliding, 4 torsional, 6 rolling friction.
     geom_condim: Vec<usize>,
-    /// Priority of each geom's contact parameters (ngeom). Those of the geom with the higher priority are taken; equal ones are mixed.
+    /// Priority of each geom's contact parameters (ngeom). Those of the geom with the higher priority are used; at equal priority they are mixed.
     geom_priority: Vec<i32>,
     /// Friction coefficients of each geom (ngeom, 3): sliding, no unit; torsional, m; rolling, m.
     geom_friction: Vec<[f64; 3]>,
-    /// Weight of each geom's `solref` and `solimp` where those of two geoms are mixed (ngeom), no unit.
+    /// Weight of each geom's `solref` and `solimp` when those of two geoms are mixed (ngeom), no unit.
     geom_solmix: Vec<f64>,
     /// `solref` of each geom's contacts (ngeom, 2); see [Solver parameters](#solver-parameters).
     geom_solref: Vec<[f64; 2]>,
@@ -230,7 +230,7 @@ arrays! {
     geom_rbound: Vec<f64>,
     /// Group of each geom for visualization (ngeom); those up to 2 are drawn.
     geom_group: Vec<i32>,
-    /// Red, green, blue, opacity of each geom (ngeom, 4), 0..1, which count without a material.
+    /// Red, green, blue, opacity of each geom (ngeom, 4), 0..1, which apply without a material.
     geom_rgba: Vec<[f64; 4]>,
     /// Material of each geom (ngeom), by its index in [`Arrays::materials`]; `None` without one.
     geom_matid: Vec<Option<usize>>,
@@ -239,7 +239,7 @@ arrays! {
 
     /// Names of the sites (nsite); may be empty. MuJoCo's `name_siteadr`.
     site_name: Vec<String>,
-    /// Shape of each site (nsite): MuJoCo's `mjtGeom`. Sensors of touch use it, and pictures.
+    /// Shape of each site (nsite): MuJoCo's `mjtGeom`. Touch sensors and pictures use it.
     site_type: Vec<GeomType>,
     /// Body that carries each site (nsite), by id.
     site_bodyid: Vec<usize>,
@@ -253,7 +253,7 @@ arrays! {
     site_sameframe: Vec<SameFrame>,
     /// Group of each site for visualization (nsite); those up to 2 are drawn.
     site_group: Vec<i32>,
-    /// Red, green, blue, opacity of each site (nsite, 4), 0..1, which count without a material.
+    /// Red, green, blue, opacity of each site (nsite, 4), 0..1, which apply without a material.
     site_rgba: Vec<[f64; 4]>,
     /// Material of each site (nsite), by its index in [`Arrays::materials`]; `None` without one.
     site_matid: Vec<Option<usize>>,
@@ -356,8 +356,7 @@ arrays! {
     tendon_solref_lim: Vec<[f64; 2]>,
     /// `solimp` of each tendon's limit (ntendon, 5); see [Solver parameters](#solver-parameters).
     tendon_solimp_lim: Vec<[f64; 5]>,
-    /// Lengths between which each tendon's spring is slack (ntendon, 2), in the unit of its length; that at `qpos_spring` where the
-    /// document gives none.
+    /// Lengths between which each tendon's spring is slack (ntendon, 2), in the unit of its length; that at `qpos_spring` if the document gives none.
     tendon_lengthspring: Vec<[f64; 2]>,
     /// Dry friction of each tendon (ntendon): N for spatial tendons.
     tendon_frictionloss: Vec<f64>,
@@ -377,7 +376,7 @@ arrays! {
     tendon_group: Vec<i32>,
     /// Radius with which each tendon is drawn (ntendon), m.
     tendon_width: Vec<f64>,
-    /// Red, green, blue, opacity of each tendon (ntendon, 4), 0..1, which count without a material.
+    /// Red, green, blue, opacity of each tendon (ntendon, 4), 0..1, which apply without a material.
     tendon_rgba: Vec<[f64; 4]>,
     /// Material of each tendon (ntendon), by its index in [`Arrays::materials`]; `None` without one.
     tendon_matid: Vec<Option<usize>>,
@@ -388,10 +387,9 @@ arrays! {
     actuator_name: Vec<String>,
     /// Kind of object that each actuator acts on (nu): MuJoCo's `mjtTrn`.
     actuator_trntype: Vec<TrnType>,
-    /// Joint, tendon, site or body that each actuator acts on (nu), by id; of a slider-crank the site of its crank. The first of
-    /// MuJoCo's two.
+    /// Joint, tendon, site or body that each actuator acts on (nu), by id; for a slider-crank, the site of its crank. The first of MuJoCo's two ids.
     actuator_trnid: Vec<usize>,
-    /// Reference site of an actuator on a site, slider's site of a slider-crank (nu), by id; `None` without one. The second of MuJoCo's
+    /// Reference site of an actuator on a site, or the slider's site of a slider-crank (nu), by id; `None` without one. The second of MuJoCo's
     /// `actuator_trnid`.
     actuator_refid: Vec<Option<usize>>,
     /// Length of each slider-crank's rod (nu), m; 0 for other actuators.
@@ -411,8 +409,8 @@ arrays! {
     actuator_forcerange: Vec<[f64; 2]>,
     /// Group of each actuator (nu). `disableactuator` of the options switches off groups 0 to 30 by bits.
     actuator_group: Vec<i32>,
-    /// Shortest and longest length of each actuator (nu, 2), in the unit of its length; only MuJoCo's muscles use it. As given, else
-    /// found by simulation where `<lengthrange>` of `<compiler>` asks for it.
+    /// Shortest and longest length of each actuator (nu, 2), in the unit of its length; only MuJoCo's muscles use it. As given, or else found by
+    /// simulation if `<lengthrange>` of `<compiler>` requests it.
     actuator_lengthrange: Vec<[f64; 2]>,
     /// How each actuator's activation follows its control (nu): MuJoCo's `mjtDyn`.
     actuator_dyntype: Vec<DynType>,
@@ -456,9 +454,9 @@ arrays! {
     sensor_refid: Vec<Option<usize>>,
     /// Bound on the absolute value of each sensor's numbers (nsensor), in their unit; 0 for none.
     sensor_cutoff: Vec<f64>,
-    /// Standard deviation of each sensor's noise (nsensor), in the unit of its numbers. It is for programs; sensors are exact.
+    /// Standard deviation of each sensor's noise (nsensor), in the unit of its numbers. It is information for programs; sensors are exact.
     sensor_noise: Vec<f64>,
-    /// How many numbers each sensor gives (nsensor).
+    /// Number of values of each sensor (nsensor).
     sensor_dim: Vec<usize>,
     /// Kind of each sensor's numbers, which decides how its cutoff applies (nsensor): MuJoCo's `mjtDataType`.
     sensor_datatype: Vec<DataType>,

@@ -1,4 +1,4 @@
-//! MuJoCo's numbers of kinds whose variants are declared in its order.
+//! MuJoCo's numbers for enums whose variants are declared in its order.
 
 use super::actuator::{BiasType, DynType, GainType, TrnType};
 use super::elements::{GeomType, JointType};

@@ -70,7 +70,7 @@ pub struct Constants {
     pub actuator_length0: Vec<f64>,
     /// The statistics, given or computed.
     pub stat: Statistic,
-    /// The relative pose of each weld that is to hold that at `qpos0`.
+    /// The relative pose of each weld that keeps the pose at `qpos0`.
     pub weld_poses: Vec<WeldPose>,
     /// The point in body 2 of each connection, by equality.
     pub connect_anchors: Vec<(usize, Vec3)>,
@@ -83,7 +83,7 @@ pub struct Constants {
 /// The relative pose of a weld at `qpos0`.
 #[derive(Clone, Copy, Debug)]
 pub struct WeldPose {
-    /// Which equality it is.
+    /// Id of the equality.
     pub equality: usize,
     /// See [`EqualityKind::Weld`].
     pub relpos: Vec3,
@@ -163,7 +163,7 @@ impl Model {
         Self { arrays }
     }
 
-    /// Returns the model with other options, to simulate something of it.
+    /// Returns the model with other options, for simulations during compilation.
     pub fn with_options(&self, edit: impl FnOnce(&mut Options)) -> Self {
         let mut arrays = self.arrays.clone();
         edit(&mut arrays.opt);
@@ -176,9 +176,8 @@ impl Model {
         self
     }
 
-    /// Returns a model with other numbers: what a program has that writes into MuJoCo's `mjModel` between two steps. Constants that
-    /// follow from numbers (`dof_invweight0`, statistics and the like) stay as they are, as there. `edit` has to keep lengths, ids
-    /// and names.
+    /// Returns a model with other numbers, as if a program had written into MuJoCo's `mjModel` between two steps. Derived constants
+    /// (`dof_invweight0`, statistics and the like) stay as they are, as in MuJoCo. `edit` must keep lengths, ids and names.
     #[must_use]
     pub fn edited(&self, edit: impl FnOnce(&mut Arrays)) -> Self {
         let mut arrays = self.arrays.clone();

@@ -67,12 +67,12 @@ pub enum GeomType {
     Mesh,
 }
 
-/// The known frame, if any, that the frame of something in a body coincides with.
+/// The known frame, if any, with which the frame of an element in a body coincides.
 ///
 /// MuJoCo copies such frames instead of composing them, which shows in the last bits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum SameFrame {
-    /// A frame of its own.
+    /// A separate frame.
     None,
     /// The body's frame.
     Body,
@@ -136,7 +136,7 @@ pub enum EqualityKind {
         anchor1: Vec3,
         /// The point in body 2, m: where the first one is at `qpos0`.
         anchor2: Vec3,
-        /// The sites that are the points, if they are sites.
+        /// The sites at the points, if they are sites.
         sites: Option<[usize; 2]>,
     },
     /// Body 1 keeps its pose relative to body 2.
@@ -225,8 +225,7 @@ impl EqualityKind {
         data
     }
 
-    /// Sets the numbers from a row of MuJoCo's `eq_data`. Numbers that MuJoCo does not read either, like the anchors of sites, are
-    /// dropped.
+    /// Sets the numbers from a row of MuJoCo's `eq_data`. Numbers that MuJoCo also ignores, such as the anchors of sites, are dropped.
     pub fn set_data(&mut self, data: &[f64; 11]) {
         let vector = |from: usize| [data[from], data[from + 1], data[from + 2]];
         match self {
@@ -250,7 +249,7 @@ impl EqualityKind {
 /// An object on the path of a tendon (MuJoCo's `mjtWrap`). A fixed tendon has joints only, a spatial one everything else.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Wrap {
-    /// A joint of one coordinate, which counts times `coef` in the length.
+    /// A joint of one coordinate, which contributes `coef` times its coordinate to the length.
     Joint {
         /// The joint.
         joint: usize,
@@ -267,11 +266,11 @@ pub enum Wrap {
         /// The site.
         site: usize,
     },
-    /// A sphere between two sites, around which the tendon wraps where it is in the way.
+    /// A sphere between two sites, around which the tendon wraps if it is in the way.
     Sphere {
         /// The geom.
         geom: usize,
-        /// The site on whose side the tendon stays; one inside of the sphere makes the tendon pass through it and touch it from inside.
+        /// The site on whose side the tendon stays; a site inside the sphere makes the tendon pass through the sphere and touch it from inside.
         side: Option<usize>,
     },
     /// A cylinder without ends, likewise.

@@ -41,7 +41,7 @@ pub struct Flex {
     pub edgeadr: usize,
     /// Vertices of each edge (nedge, 2), the lower one first (`flex_edge`).
     pub edge: Vec<[usize; 2]>,
-    /// Whether both ends of each edge never move against each other (nedge): `flexedge_rigid`.
+    /// Whether the ends of each edge never move relative to each other (nedge): `flexedge_rigid`.
     pub edge_rigid: Vec<bool>,
     /// Length of each edge at `qpos0` (nedge), m: `flexedge_length0`.
     pub edge_length0: Vec<f64>,
@@ -69,9 +69,9 @@ pub struct Flex {
     pub edgedamping: f64,
     /// Whether an equality holds the lengths of the edges (`flex_edgeequality`).
     pub edgeequality: bool,
-    /// Bits that meet `conaffinity` of others (`flex_contype`).
+    /// Bits matched with `conaffinity` of others (`flex_contype`).
     pub contype: u32,
-    /// Bits that meet `contype` of others (`flex_conaffinity`).
+    /// Bits matched with `contype` of others (`flex_conaffinity`).
     pub conaffinity: u32,
     /// Dimension of contacts: 1, 3, 4 or 6 (`flex_condim`).
     pub condim: usize,

@@ -1,5 +1,5 @@
-//! Compiled models of the engine [mjcf-sim](https://docs.rs/mjcf-sim) under MuJoCo's names, and what lies beneath them:
-//! mathematics on plain arrays, sources of documents and textures, file formats, limits on untrusted input.
+//! Compiled models of the engine [mjcf-sim](https://docs.rs/mjcf-sim) under MuJoCo's names, and their foundations: mathematics on plain arrays,
+//! sources of documents and textures, file formats, limits on untrusted input.
 //!
 //! Programs use it through `mjcf-sim`, whose page has examples. Versions below 1.0 may change any item.
 #![cfg_attr(docsrs, feature(doc_cfg))]

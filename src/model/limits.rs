@@ -1,4 +1,4 @@
-//! Limits on input that may come from anywhere.
+//! Limits on untrusted input.
 
 const KIB: u64 = 1 << 10;
 const MIB: u64 = KIB << 10;
@@ -18,14 +18,14 @@ macro_rules! limits {
         }
 
         impl $name {
-            /// The limits of the functions that take none.
+            /// The limits of functions without a parameter for them.
             pub const DEFAULT: Self = Self { $($field: $default as $type,)* };
         }
     };
 }
 
 limits! {
-    /// Bounds on untrusted input, so that no text or file exhausts the memory or the stack.
+    /// Bounds on untrusted input, so that no text or file exhausts memory or the stack.
     ///
     /// Every reader has a function that takes limits; the shorter one beside it uses [`Limits::default`]. Exceeding a limit is
     /// an error of the reader that names the limit. Fields may be added in later versions, so start from the default:
@@ -51,13 +51,13 @@ limits! {
         depth: usize = 500,
         /// MJCF: levels of nested includes, and of models within models. A level takes up to 2 KiB of stack without optimisation.
         include_depth: usize = 16,
-        /// MJCF: bytes of a name or any other attribute that is text. Default classes copy them.
+        /// MJCF: bytes of a name or any other text attribute. Default classes copy them.
         text_bytes: usize = 1024,
         /// MJCF: default classes.
         classes: usize = 5000,
         /// MJCF: user values of an element. Default classes copy them.
         user: usize = 256,
-        /// MJCF: bodies, the world among them.
+        /// MJCF: bodies, including the world.
         bodies: usize = 20_000,
         /// MJCF: geoms.
         geoms: usize = 20_000,
@@ -67,11 +67,11 @@ limits! {
         pairs: usize = 20_000,
         /// MJCF: numbers in all keyframes together.
         key_numbers: usize = 4_194_304,
-        /// MJCF: steps of the simulations that look for the lengths of muscles.
+        /// MJCF: steps of the simulations that find the lengths of muscles.
         lengthrange_steps: usize = 1_000_000,
         /// MJCF: vertices, normals, texture coordinates and faces of all meshes together.
         mesh_elements: usize = 4_194_304,
-        /// MJCF: numbers of a mesh that stand in the document itself.
+        /// MJCF: numbers of a mesh in the document itself.
         mesh_numbers: usize = 1_048_576,
         /// MJCF: the largest magnitude of a number. Products of a few such numbers stay finite.
         real: f64 = 1e30,
@@ -87,7 +87,7 @@ limits! {
         picture_side: u32 = 8192,
         /// Pictures: bytes of memory for decoding one.
         picture_bytes: u64 = 160 * MIB,
-        /// Pictures: pixels of all textures of a scene, in files and in patterns, as they are before they are reduced.
+        /// Pictures: pixels of all textures of a scene, in files and in patterns, before they are reduced.
         texture_pixels: usize = 268_435_456,
         /// Policies: bytes of an answer of a program.
         answer_bytes: usize = MIB,
@@ -115,9 +115,9 @@ limits! {
         pickle_dimensions: usize = 8,
         /// Motions: numbers in the rows of a motion.
         motion_numbers: usize = 33_554_432,
-        /// Motions: bytes of a file that is text.
+        /// Motions: bytes of a text file.
         motion_text_bytes: u64 = 512 * MIB,
-        /// Motions: seconds that one may last.
+        /// Motions: longest duration, s.
         motion_seconds: f64 = 86_400.0,
         /// Logs: records of a log.
         records: usize = 2_000_000,
@@ -127,7 +127,7 @@ limits! {
 }
 
 impl Limits {
-    /// Returns how many numbers the coordinates of a model within these limits may have: four for three degrees of freedom.
+    /// Returns the largest number of coordinates of a model within these limits: four for three degrees of freedom.
     pub fn state(&self) -> usize {
         2 * self.dofs
     }

@@ -97,7 +97,7 @@ pub struct Material {
     pub emission: f64,
     /// Repetitions of a 2d texture.
     pub texrepeat: [f64; 2],
-    /// Repeat per unit length instead of per object.
+    /// Whether the texture repeats per unit length instead of per object.
     pub texuniform: bool,
 }
 
@@ -135,12 +135,11 @@ pub struct Light {
     pub dir: Vec3,
     /// How it is placed and aimed.
     pub mode: CamLight,
-    /// Body that it shines at in modes that aim at one.
+    /// Body at which it shines in modes that aim at one.
     pub targetbodyid: Option<usize>,
     /// Position at `qpos0` relative to the origin of its body, along the axes of the world, m.
     pub pos0: Vec3,
-    /// Position at `qpos0` relative to the centre of mass of the target, or else its body, and those below,
-    /// along the axes of the world, m.
+    /// Position at `qpos0` relative to the centre of mass of the target (or else of its body) and the bodies below, along the axes of the world, m.
     pub poscom0: Vec3,
     /// Unit direction at `qpos0` in the world.
     pub dir0: Vec3,
@@ -164,7 +163,7 @@ pub struct Light {
 pub struct Visual {
     /// Vertical field of view of the free camera, degrees.
     pub fovy: f64,
-    /// Direction in which the free camera looks at first, about the vertical axis, degrees; 0 is along x.
+    /// Initial direction of the free camera about the vertical axis, degrees; 0 is along x.
     pub azimuth: f64,
     /// Angle of that view above the horizon, degrees.
     pub elevation: f64,

@@ -2,7 +2,7 @@
 
 use crate::math::{Quat, Vec3, order};
 
-/// A mesh that geoms show and touch with, centred and along its principal axes, as MuJoCo keeps it: its entry in each of the
+/// A mesh that geoms use for pictures and contacts, centred and along its principal axes, as in MuJoCo: its entry in each of the
 /// arrays `mesh_*`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mesh {
@@ -21,12 +21,12 @@ pub struct Mesh {
     /// Texture coordinates at the corners of each triangle; [`Mesh::NONE`] where a file gives none, empty where `texcoord` is
     /// (`mesh_facetexcoord`).
     pub facetexcoord: Vec<[u32; 3]>,
-    /// The convex hull, which touches; `None` for a mesh that only is drawn (`mesh_graph`).
+    /// The convex hull, for contacts; `None` for a mesh that is only drawn (`mesh_graph`).
     pub hull: Option<MeshHull>,
-    /// The polygons of the hull, or of a mesh without one that touches in a `<pair>`; none unless the document enables `multiccd`, as nothing
-    /// else needs them.
+    /// The polygons of the hull, or of a mesh without one that touches in a `<pair>`; none unless the document enables `multiccd`, the only feature
+    /// that needs them.
     pub polygons: MeshPolygons,
-    /// Scale that the vertices were multiplied with (`mesh_scale`).
+    /// Scale by which the vertices were multiplied (`mesh_scale`).
     pub scale: Vec3,
     /// Position subtracted from the vertices to centre them, m (`mesh_pos`).
     pub pos: Vec3,
@@ -34,22 +34,22 @@ pub struct Mesh {
     pub quat: Quat,
     /// Least and greatest coordinates, m.
     pub bounds: [Vec3; 2],
-    /// Volume, m^3; of a shell the area, m^2.
+    /// Volume, m^3; for a shell, the area, m^2.
     pub volume: f64,
-    /// Whether volume and inertia are sums over the triangles of the hull. Sums are in single precision, so that their last digits
-    /// differ from MuJoCo's where the order of triangles does.
+    /// Whether volume and inertia are sums over the triangles of the hull. Sums are in single precision, so their last digits differ from MuJoCo's if
+    /// the order of triangles does.
     pub of_hull: bool,
     /// Half lengths of the homogeneous box with the same inertia, m.
     pub inertia_box: Vec3,
 }
 
 impl Mesh {
-    /// Stands where a corner of a triangle has no normal or texture coordinates.
+    /// Index for a corner of a triangle without a normal or without texture coordinates.
     pub const NONE: u32 = u32::MAX;
 }
 
-/// The convex hull of a mesh as a graph of its corners, in MuJoCo's order, which Qhull makes: where several corners are equally
-/// far, it decides which is found first. Where Qhull's steps come to no hull, the order is that of the vertices.
+/// The convex hull of a mesh as a graph of its corners, in MuJoCo's order, which comes from Qhull: if several corners are equally far, the order
+/// decides which is found first. If Qhull's steps yield no hull, the order is that of the vertices.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MeshHull {
     /// Index of each corner's vertex in the mesh.
@@ -136,7 +136,7 @@ fn slice<'a>(adr: &[u32], all: &'a [u32], of: usize) -> &'a [u32] {
 }
 
 impl MeshHull {
-    /// Makes the graph of triangles that close a surface.
+    /// Makes the graph from triangles that form a closed surface.
     pub fn new(face: Vec<[u32; 3]>) -> Self {
         let mut vert = face.as_flattened().to_vec();
         vert.sort_unstable();
@@ -160,7 +160,7 @@ impl MeshHull {
         }
     }
 
-    /// Notes where the corners are, given the vertices of the mesh.
+    /// Stores the positions of the corners, given the vertices of the mesh.
     pub fn place(&mut self, vert: &[[f32; 3]]) {
         let point = |&vertex: &u32| {
             let [x, y, z] = vert[vertex as usize];
@@ -207,7 +207,7 @@ impl MeshHull {
         slice(&self.edge_adr, &self.edge, corner)
     }
 
-    /// Returns where the corners are, m, each with a number that fills it up to four.
+    /// Returns the positions of the corners, m, each padded to four numbers.
     #[inline(always)]
     pub fn points(&self) -> &[[f32; 4]] {
         &self.point

@@ -96,7 +96,7 @@ impl Wrap {
 }
 
 impl Arrays {
-    /// Returns whether a tendon is spatial, its length one in space.
+    /// Returns whether a tendon is spatial.
     pub fn tendon_is_spatial(&self, tendon: usize) -> bool {
         !matches!(self.tendon_wrap[tendon].first(), Some(Wrap::Joint { .. }))
     }

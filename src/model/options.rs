@@ -49,7 +49,7 @@ pub struct Options {
     pub iterations: usize,
     /// Scaled improvement or gradient below which the solver stops.
     pub tolerance: f64,
-    /// Greatest number of iterations of the solver against slip, which changes friction after the other; 0 for none.
+    /// Greatest number of iterations of the solver against slip, which corrects friction after the main solver; 0 for none.
     pub noslip_iterations: usize,
     /// Scaled improvement below which it stops.
     pub noslip_tolerance: f64,
@@ -79,7 +79,7 @@ pub struct Options {
     pub wind: Vec3,
     /// Magnetic flux, which magnetometers read.
     pub magnetic: Vec3,
-    /// Groups of actuators that exert no force (`actuatorgroupdisable`): bit `k` is group `k`, of 0 to 30.
+    /// Groups of actuators that exert no force (`actuatorgroupdisable`): bit `k` is group `k`, from 0 to 30.
     pub disableactuator: u32,
     /// Parts of the simulation that may be switched off.
     pub flags: Flags,
@@ -118,8 +118,7 @@ pub enum IntegratorType {
     Rk4,
 }
 
-/// The parts of a simulation that a document may switch off (`<option><flag>`); all but `multiccd` are on by
-/// default.
+/// The parts of a simulation that a document may switch off (`<option><flag>`); all except `multiccd` are on by default.
 #[doc(alias = "mjtDisableBit")]
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Flags {
@@ -158,7 +157,7 @@ pub struct Flags {
     pub nativeccd: bool,
     /// Several contacts of a convex pair; off by default.
     pub multiccd: bool,
-    /// Islands of bodies found one by one; off by default. Models in which it could be seen are refused: those with conjugate gradients.
+    /// Islands of bodies found one by one; off by default. Models in which it could make a difference, those with conjugate gradients, are refused.
     pub island: bool,
     /// Restart a simulation that diverges; on by default. It changes no motion here: a simulation that diverges is an error.
     pub autoreset: bool,

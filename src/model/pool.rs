@@ -1,4 +1,4 @@
-//! Pools of reusable tools that remember nothing from one use to the next, so that many users can take turns.
+//! Pools of reusable, stateless tools, so that many users can take turns.
 
 use std::sync::{Mutex, PoisonError};
 
@@ -15,7 +15,7 @@ impl<T> Default for Pool<T> {
 }
 
 impl<T> Pool<T> {
-    /// Does some work with a tool, which `make` makes if none is idle. One with which the work panicked does not come back.
+    /// Does some work with a tool, which `make` creates if none is idle. A tool is not returned if the work panics.
     pub fn lend<R>(&self, make: impl FnOnce() -> T, work: impl FnOnce(&mut T) -> R) -> R {
         let mut tool = self.take().unwrap_or_else(make);
         let result = work(&mut tool);

@@ -24,12 +24,12 @@ macro_rules! sensors {
                 match self { $(Self::$kind => $code,)* }
             }
 
-            /// Returns how many numbers such a sensor gives; `sensor_dim` has that of a user sensor.
+            /// Returns the number of values of such a sensor; `sensor_dim` has that of a user sensor.
             pub const fn dim(self) -> usize {
                 match self { $(Self::$kind => $dim,)* }
             }
 
-            /// Returns the kind of its numbers, which says how a cutoff acts on them.
+            /// Returns the kind of its numbers, which determines how a cutoff acts on them.
             pub const fn datatype(self) -> DataType {
                 match self { $(Self::$kind => DataType::$data,)* }
             }
@@ -76,15 +76,15 @@ sensors! {
     BallQuat = 17, "ballquat", 4, Quaternion;
     /// Angular velocity of a ball joint, rad/s, in the axes of its body.
     BallAngVel = 18, "ballangvel", 3, Real;
-    /// Distance of a joint to its limit less the margin, rad or m, while the limit is active; else 0.
+    /// Distance of a joint to its limit minus the margin, rad or m, while the limit is active; otherwise 0.
     JointLimitPos = 19, "jointlimitpos", 1, Real;
-    /// Rate of that distance while the limit is active; else 0.
+    /// Rate of that distance while the limit is active; otherwise 0.
     JointLimitVel = 20, "jointlimitvel", 1, Real;
     /// Force of the limit of a joint, N m or N.
     JointLimitFrc = 21, "jointlimitfrc", 1, Real;
-    /// Distance of a tendon to its limit less the margin while the limit is active; else 0.
+    /// Distance of a tendon to its limit minus the margin while the limit is active; otherwise 0.
     TendonLimitPos = 22, "tendonlimitpos", 1, Real;
-    /// Rate of that distance while the limit is active; else 0.
+    /// Rate of that distance while the limit is active; otherwise 0.
     TendonLimitVel = 23, "tendonlimitvel", 1, Real;
     /// Force of the limit of a tendon.
     TendonLimitFrc = 24, "tendonlimitfrc", 1, Real;
@@ -118,13 +118,13 @@ sensors! {
     GeomNormal = 38, "normal", 3, Axis;
     /// The points of both that are nearest to each other, m, in the world; zero likewise.
     GeomFromTo = 39, "fromto", 6, Real;
-    /// Energy of heights and springs, J.
+    /// Potential energy of gravity and springs, J.
     EPotential = 40, "e_potential", 1, Real;
     /// Energy of motion, J.
     EKinetic = 41, "e_kinetic", 1, Real;
     /// Time, s.
     Clock = 42, "clock", 1, Real;
-    /// Values that a program writes: `sensor_dim` numbers of its own, which no step touches.
+    /// Values that a program writes: `sensor_dim` numbers, which no step changes.
     User = 44, "user", 0, Real;
 }
 
@@ -146,9 +146,9 @@ impl SensorType {
 #[doc(alias = "mjtDataType")]
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum DataType {
-    /// Any numbers; a cutoff bounds both signs.
+    /// Any numbers; a cutoff bounds both sides.
     Real,
-    /// Numbers whose positive side a cutoff bounds.
+    /// Numbers that a cutoff bounds only on the positive side.
     Positive,
     /// A unit vector, which has no cutoff.
     Axis,

@@ -1,4 +1,4 @@
-//! Skins: surfaces that bodies pull along, which are drawn and nothing else.
+//! Skins: surfaces that follow bodies and are only drawn.
 
 use crate::math::Vec3;
 
@@ -30,9 +30,9 @@ pub struct Skin {
 pub struct SkinBone {
     /// Body, by id (`skin_bonebodyid`).
     pub body: usize,
-    /// Position of the body where the vertices are as written, m (`skin_bonebindpos`).
+    /// Position of the body in the bind pose, m (`skin_bonebindpos`).
     pub bindpos: [f32; 3],
-    /// Unit orientation of the body there (`skin_bonebindquat`).
+    /// Unit orientation of the body in the bind pose (`skin_bonebindquat`).
     pub bindquat: [f32; 4],
     /// Vertices of the skin that it pulls (`skin_bonevertid`).
     pub vertid: Vec<u32>,

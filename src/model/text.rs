@@ -1,4 +1,4 @@
-//! Text from outside, as messages quote it, and the names that it may have meant.
+//! Untrusted text in messages, and the names that it may have meant.
 
 use std::fmt::Write as _;
 
@@ -24,8 +24,7 @@ pub fn quoted(text: &str) -> String {
     out
 }
 
-/// Returns the known name nearest to `text`, if it is so near that it was probably meant. Large and small ASCII letters count
-/// as equal.
+/// Returns the known name nearest to `text`, if it is so near that it was probably meant. The comparison ignores the case of ASCII letters.
 pub fn nearest<'n>(text: &str, known: impl Iterator<Item = &'n str>) -> Option<&'n str> {
     const LONGEST: usize = 64; // the distance costs the product of the lengths
     if text.len() > LONGEST {
@@ -42,12 +41,12 @@ pub fn nearest<'n>(text: &str, known: impl Iterator<Item = &'n str>) -> Option<&
         .map(|(_, name)| name)
 }
 
-/// Returns what an error about an unknown name adds to suggest `nearest`; empty where there is none.
+/// Returns the text with which an error about an unknown name suggests `nearest`; empty if there is none.
 pub fn suggestion(nearest: Option<&str>) -> String {
     nearest.map_or_else(String::new, |name| format!("; did you mean \"{}\"?", quoted(name)))
 }
 
-/// Returns whether a character changes the direction or the order of others, or is not seen.
+/// Returns whether a character changes the direction or the order of others, or is invisible.
 fn is_format(c: char) -> bool {
     matches!(c, '\u{ad}' | '\u{61c}' | '\u{200b}'..='\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2060}'..='\u{206f}' | '\u{feff}')
 }

@@ -52,7 +52,7 @@ struct Queues<J> {
     done: VecDeque<Box<J>>,
     /// Number of threads.
     threads: usize,
-    /// Number of threads that may take jobs, the first ones.
+    /// Number of threads that may take jobs; these are the first ones.
     active: usize,
     /// Number of finished jobs that the caller waits for, if it does.
     wanted: Option<usize>,
@@ -65,7 +65,7 @@ impl<J> Shared<J> {
         self.queues.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Spins, without the lock, until a count has grown by `by`, or patience runs out.
+    /// Spins, without the lock, until a count has grown by `by` or the number of spins is used up.
     fn look_out(&self, queues: MutexGuard<'_, Queues<J>>, count: &AtomicUsize, by: usize) {
         let start = count.load(Ordering::Relaxed);
         drop(queues);
@@ -110,8 +110,8 @@ impl<J: Job> ThreadPool<J> {
         Self::start(threads, jobs, if threads > cores { 0 } else { PATIENCE })
     }
 
-    /// Starts a thread for one job at a time, next to a caller who does another. Both stay awake from one job to the next where
-    /// jobs follow each other closely.
+    /// Starts a thread for one job at a time, next to a caller that does another. Both stay awake from one job to the next if jobs follow each other
+    /// closely.
     ///
     /// # Errors
     /// As [`ThreadPool::new`].
@@ -151,7 +151,7 @@ impl<J: Job> ThreadPool<J> {
         Ok(pool)
     }
 
-    /// Wakes a thread that [`ThreadPool::of_one`] started, as a job is about to come.
+    /// Wakes a thread that [`ThreadPool::of_one`] started, because a job is about to come.
     pub fn wake(&self) {
         self.shared.spare.notify_one();
     }
@@ -247,7 +247,7 @@ impl<J: Job> ThreadPool<J> {
     }
 }
 
-/// Ends the threads, each when the job in its hands is done.
+/// Ends the threads, each after its current job.
 impl<J: Job> Drop for ThreadPool<J> {
     fn drop(&mut self) {
         let mut queues = self.shared.lock();

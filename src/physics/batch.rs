@@ -10,7 +10,7 @@ use crate::model::Model;
 use crate::soft::{SoftEngine, SoftModel, SoftOptions};
 use crate::state::State;
 
-/// An error in stepping one state of a batch. That state is as its failed step left it. All other states were stepped.
+/// An error in stepping one state of a batch. That state is left as after its failed step. All other states were stepped.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[error("state {index} of the batch: {source}")]
 pub struct BatchError {
@@ -101,7 +101,8 @@ impl Batch {
     }
 
     /// Steps every state `steps` times. Before each step of a state `control` is called with its index, the number of the step, and the state.
-    /// Sensors, contacts and poses are afterwards those of the start of the last step; [`Engine::forward`](crate::Engine::forward) computes those of its end.
+    /// Afterwards, sensors, contacts and poses are those at the start of the last step; [`Engine::forward`](crate::Engine::forward) computes those at
+    /// its end.
     ///
     /// # Errors
     /// The first state that could not be stepped, which `control` has made unfit or which diverges; the others were stepped to the end.
@@ -111,8 +112,8 @@ impl Batch {
             .map_or(Ok(()), |mut all| all.rollout(steps, control))
     }
 
-    /// Splits the batch into at most `parts` runs of consecutive states, nearly equal in length, each with its own engine, for the caller's
-    /// threads. A batch without states has no parts. `mjcf_sim::rollout_on` starts threads itself.
+    /// Splits the batch into at most `parts` runs of consecutive states, of nearly equal length, each with its own engine, for the caller's threads.
+    /// A batch without states has no parts. `mjcf_sim::rollout_on` starts threads itself.
     pub fn split(&mut self, parts: usize) -> impl Iterator<Item = BatchPart<'_>> {
         let parts = parts.clamp(1, self.states.len().max(1));
         let missing = parts.saturating_sub(self.engines.len());

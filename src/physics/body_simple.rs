@@ -3,7 +3,7 @@
 use crate::math::QUAT_ID;
 use crate::model::{Arrays, JointType, SameFrame};
 
-/// Returns whether MuJoCo gives a body its whole inverse mass, not the mean over directions: a [simple](is_simple) body with slide
+/// Returns whether MuJoCo uses the inverse mass of a body as it is, instead of the mean over directions: a [simple](is_simple) body with slide
 /// joints only (`body_simple` 2).
 pub fn slides_alone(model: &Arrays, b: usize) -> bool {
     let joints = model.body_jntadr[b]..model.body_jntadr[b] + model.body_jntnum[b];

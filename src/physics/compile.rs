@@ -1,4 +1,4 @@
-//! The last step from a document to a model: the constants that need dynamics.
+//! The last stage of compilation: the constants that need dynamics.
 
 use crate::dynamics::{MAX_WEIGHT, constants};
 use crate::length_range;
@@ -48,8 +48,8 @@ pub fn compile(spec: Spec) -> Result<Model, LoadError> {
     length_range::complete(model, &lengthrange, &places)
 }
 
-/// Finds a body whose inertia MuJoCo treats as diagonal (`body_simple`) although two of its joints move it alike: one without
-/// children, in the world or in a static body of the world, whose joints are at its centre of mass and along its axes.
+/// Finds a body whose inertia MuJoCo treats as diagonal (`body_simple`) although two of its joints move it in the same way: a body without children,
+/// in the world or in a static body of the world, whose joints are at its centre of mass and along its axes.
 fn redundant(arrays: &Arrays) -> Option<usize> {
     let at_centre = |j: usize| arrays.jnt_pos[j].iter().all(|v| v.abs() < 1e-6);
     let axis = |j: usize| {
@@ -71,7 +71,7 @@ fn redundant(arrays: &Arrays) -> Option<usize> {
     })
 }
 
-/// Refuses constants that are not finite, or that a singular inertia leaves to rounding errors.
+/// Refuses constants that are not finite, or that consist of rounding errors because of a singular inertia.
 fn check(arrays: &Arrays, constants: &Constants, places: &Locations) -> Result<(), LoadError> {
     if let Some(body) = redundant(arrays) {
         return Err(places.body_error(body, REDUNDANT));

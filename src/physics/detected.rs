@@ -7,7 +7,7 @@ use crate::model::Arrays;
 #[doc(alias = "mjContact")]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Contact {
-    /// The geoms (2), by id: the one of lower [`crate::model::GeomType`] first, which the normal points away from.
+    /// The geoms (2), by id: the one of lower [`crate::model::GeomType`] first; the normal points away from it.
     pub geom: [usize; 2],
     /// Distance between the surfaces, m; negative is penetration.
     pub dist: f64,

@@ -10,8 +10,7 @@ use crate::state::State;
 use crate::table::length;
 use crate::topology::Topology;
 
-/// Advances a [`State`] of a [`Model`]. An engine remembers nothing that changes a later step: the state is all there
-/// is.
+/// Advances a [`State`] of a [`Model`]. An engine stores nothing that affects later steps; everything is in the state.
 ///
 /// Write your own to change how a scene moves. This one leaves forces to [`SoftEngine`](crate::SoftEngine) and integrates hinges and
 /// slides by itself, within a greatest speed:
@@ -76,8 +75,8 @@ pub trait Engine: Send + Sync {
         State::new(self.model(), self.topology())
     }
 
-    /// Returns the joint-space inertia matrix in full (nv, nv), row by row, kg and kg m^2: MuJoCo's `mj_fullM`. It is empty
-    /// if the state is of another model.
+    /// Returns the joint-space inertia matrix in full (nv, nv), row by row, kg and kg m^2: MuJoCo's `mj_fullM`. It is empty if the state belongs to
+    /// another model.
     #[doc(alias("mj_fullM", "qM"))]
     fn full_m(&self, state: &State) -> Vec<f64> {
         if state.qm.len() == self.topology().tiles.tiles() {
@@ -87,8 +86,8 @@ pub trait Engine: Send + Sync {
         }
     }
 
-    /// Returns a row of the constraint Jacobian in full (nv), MuJoCo's `efc_J`; nothing if there are fewer rows, or the state
-    /// is of another model.
+    /// Returns a row of the constraint Jacobian in full (nv), MuJoCo's `efc_J`; nothing if there are fewer rows or the state belongs to another
+    /// model.
     #[doc(alias("efc_J", "mj_mulJacVec"))]
     fn efc_j(&self, state: &State, row: usize) -> Option<Vec<f64>> {
         state.efc.jacobian_row(self.topology(), row)
@@ -144,9 +143,8 @@ pub trait Engine: Send + Sync {
     #[doc(alias = "mj_forward")]
     fn forward(&mut self, state: &mut State) -> Result<(), EngineError>;
 
-    /// Advances by one time step. The computed quantities stay those of the start of the step; with the integrator `RK4`
-    /// they are those of the last of its four evaluations, at the end of the step, except for `sensordata`, which is that of the
-    /// start.
+    /// Advances by one time step. The computed quantities are those at the start of the step. With the integrator `RK4` they are those of the last of
+    /// its four evaluations, at the end of the step, except for `sensordata`, which belongs to the start.
     ///
     /// # Errors
     /// As [`Engine::forward`].
@@ -160,7 +158,7 @@ pub trait Engine: Send + Sync {
     }
 }
 
-/// A part of the work of a physics step.
+/// A stage of a physics step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Stage {
     /// Poses and inertia.
@@ -205,8 +203,7 @@ impl Stage {
     }
 }
 
-/// A function that is called when a stage begins, and with `None` when a step is done; for timing, as the library has no
-/// clock.
+/// A function that is called when a stage begins, and with `None` when a step is done; for timing, because the library has no clock.
 pub type Probe = Box<dyn FnMut(Option<Stage>) + Send + Sync>;
 
 /// Checks that all vectors of a state have the right length, and that those that a step reads are finite.
@@ -226,14 +223,13 @@ fn check_shape(m: &Model, topology: &Topology, s: &State) -> Result<(), EngineEr
     s.params.fits(m)
 }
 
-/// Reports the coordinate that left the bounds by most: positions first, as they drag the rest along.
+/// Reports the coordinate that left the bounds by most: positions first, because they affect the rest.
 #[doc(alias = "mj_checkAcc")]
 pub fn check_output(model: &Model, s: &State) -> Result<(), EngineError> {
     check_bounds(model, s, &[("qpos", &s.qpos), ("qvel", &s.qvel), ("qacc", &s.qacc)])
 }
 
-/// Reports accelerations that are not finite, at an evaluation within a step. MuJoCo looks for large ones at the start of a
-/// step only.
+/// Reports accelerations that are not finite, at an evaluation within a step. MuJoCo checks for large ones only at the start of a step.
 pub fn check_evaluation(model: &Model, s: &State) -> Result<(), EngineError> {
     if s.qacc.iter().all(|v| v.is_finite()) {
         return Ok(());
@@ -241,7 +237,7 @@ pub fn check_evaluation(model: &Model, s: &State) -> Result<(), EngineError> {
     check_output(model, s)
 }
 
-/// Reports the first contact that is not finite. Bodies may still be finite: one of 1e30 kg does not feel it.
+/// Reports the first contact that is not finite. Bodies may still be finite: a body of 1e30 kg is barely affected.
 pub fn check_contacts(model: &Model, s: &State) -> Result<(), EngineError> {
     let finite = |c: &Contact| {
         let numbers = c.pos.iter().chain(&c.frame).chain(&c.force);

@@ -42,7 +42,7 @@ pub enum EngineError {
         /// Number of keyframes.
         count: usize,
     },
-    /// The mass or the size of a body that something holds cannot change.
+    /// The mass or the size of a body that is attached to others cannot change.
     #[error(
         "the body {body:?} is not free: mass, inertia and size can change for bodies of the world with a free joint that carry \
          no other body"
@@ -83,7 +83,7 @@ pub enum EngineError {
         /// The number.
         value: f64,
     },
-    /// A step has more of something than its limit.
+    /// A step exceeds a limit.
     #[error("more than {limit} {what} in step {step}: place the bodies apart, or let fewer of them touch")]
     TooMany {
         /// Steps done before.
@@ -112,7 +112,7 @@ pub enum EngineError {
         /// Its value.
         value: f64,
     },
-    /// The simulation diverged in a contact, though positions, velocities and accelerations still are numbers.
+    /// The simulation diverged in a contact, although positions, velocities and accelerations are still finite.
     #[error(
         "the simulation diverged in step {step} where the geoms {} and {} touch (position or force is not a finite number): \
          make sizes, masses or speeds smaller", .geoms[0], .geoms[1]

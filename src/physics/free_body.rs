@@ -1,4 +1,4 @@
-//! Another mass, inertia and size for a body that nothing holds.
+//! Another mass, inertia and size for a free body.
 
 use crate::error::EngineError;
 use crate::math::{Vec3, column, cross, dot, quat_to_mat};
@@ -36,7 +36,7 @@ impl FreeBody {
 }
 
 impl State {
-    /// Changes the mass, inertia or size of a body from the next step on. The body must be in the world, have a free joint and carry
+    /// Changes the mass, inertia or size of a body from the next step. The body must be in the world, have a free joint and carry
     /// no other body. A reset of the environment restores the model's values. Pictures and touch sensors keep the size of the model.
     ///
     /// Derived quantities (inverse weights, masses of subtrees) follow in closed form: with mass `m`, moments

@@ -1,4 +1,4 @@
-//! The range in which an actuator can shorten and lengthen, by a simulation of each direction while a document is compiled.
+//! The range of lengths of an actuator, found by simulating both directions while a document is compiled.
 
 use std::sync::Arc;
 
@@ -20,7 +20,7 @@ const LONG: &str = "the simulation that looks for its lengthrange has too many s
     <lengthrange> of <compiler>";
 
 /// Completes `actuator_lengthrange` as MuJoCo's `mj_setLengthRange` does: from the given range, from the limit of the joint or tendon,
-/// or by pulling and pushing at the actuator for some time, with only equalities and limits active.
+/// or by pulling and pushing the actuator for some time, with only equalities and limits active.
 ///
 /// # Errors
 /// Lengths that do not come to rest, or do not change.
@@ -61,7 +61,7 @@ fn is_asked(model: &Model, settings: &LengthRange, i: usize) -> bool {
     wanted && !(settings.useexisting && shortest < longest)
 }
 
-/// Returns the limit that `uselimit` gives an actuator.
+/// Returns the limit that an actuator gets from `uselimit`.
 fn own_limit(model: &Model, i: usize) -> Option<[f64; 2]> {
     // MuJoCo has two ids for each actuator, one after the other, and 3.3.0 looks here at the i-th of all: at the target of another
     // actuator, or at its second id. Most models with more than one muscle are simulated for that reason, and so they are here
@@ -147,7 +147,7 @@ impl<'a> LengthRangeSimulation<'a> {
         }
     }
 
-    /// Pulls (-1) or pushes (1) at an actuator for `inttotal`. Returns the least and the greatest length of the last `interval`.
+    /// Pulls (-1) or pushes (1) an actuator for `inttotal`. Returns the least and the greatest length of the last `interval`.
     fn pull(&mut self, i: usize, side: f64) -> Result<[f64; 2], &'static str> {
         let settings = self.settings;
         let mut s = self.engine.new_state();
@@ -166,7 +166,7 @@ impl<'a> LengthRangeSimulation<'a> {
         Ok(seen.unwrap_or_default())
     }
 
-    /// Applies the force along the moment of an actuator that accelerates the model as much as `accel` says.
+    /// Applies the force along the moment of an actuator that accelerates the model by `accel`.
     fn push(&mut self, s: &mut State, i: usize, side: f64) {
         let (model, topology) = (self.engine.model().clone(), self.engine.topology());
         kinematics(&model, s);

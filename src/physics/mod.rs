@@ -1,4 +1,4 @@
-//! `Model` + `State` -> next `State`.
+//! Physics: advances the `State` of a `Model`.
 //!
 //! [`SoftEngine`] is MuJoCo's soft-constraint formulation in joint space. The crate mjcf-sim-rapier has a
 //! second engine, Rapier's own pipeline, and a mirror of a state for ray casts and shape queries.

@@ -28,8 +28,8 @@ table! {
         /// Inverse weight of each degree of freedom (nv), as [`Arrays::dof_invweight0`]: 1/(kg m^2) for rotations, 1/kg for
         /// translations.
         pub dof_invweight0: [f64; model.nv] => model.dof_invweight0.clone();
-        /// Mass of each body (nbody), kg. [`State::set_free_body`](crate::State::set_free_body) keeps what depends on it in
-        /// step; the same is true of the fields below.
+        /// Mass of each body (nbody), kg. [`State::set_free_body`](crate::State::set_free_body) keeps dependent quantities consistent; the same is
+        /// true of the fields below.
         pub body_mass: [f64; model.nbody()] => model.body_mass.clone();
         /// Mass of each body with all bodies below it (nbody), kg.
         pub body_subtreemass: [f64; model.nbody()] => model.body_subtreemass.clone();
@@ -37,7 +37,7 @@ table! {
         pub body_inertia: [Vec3; model.nbody()] => model.body_inertia.clone();
         /// Inverse weights of each body (nbody, 2), as [`Arrays::body_invweight0`]: translation, 1/kg, and rotation, 1/(kg m^2).
         pub body_invweight0: [[f64; 2]; model.nbody()] => model.body_invweight0.clone();
-        /// Size of each geom (ngeom, 3), m; see [`GeomType`](crate::model::GeomType). Touch sensors stay where the model has them.
+        /// Size of each geom (ngeom, 3), m; see [`GeomType`](crate::model::GeomType). Touch sensors keep their positions in the model.
         pub geom_size: [Vec3; model.ngeom()] => model.geom_size.clone();
         /// Radius of each geom's bounding sphere (ngeom), m; 0 for planes.
         pub geom_rbound: [f64; model.ngeom()] => model.geom_rbound.clone();

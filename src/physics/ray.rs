@@ -104,7 +104,7 @@ pub(super) fn nearest_geom(
     nearest
 }
 
-/// Returns the distance at which a ray meets a shape, in lengths of `direction`; from inside, that at which it leaves.
+/// Returns the distance at which a ray meets a shape, in lengths of `direction`; from inside, the distance at which it leaves.
 #[doc(alias = "mju_rayGeom")]
 pub(super) fn ray_shape(
     kind: GeomType,
@@ -147,7 +147,7 @@ fn ray_mesh(mesh: &Mesh, radius: f64, (p, v): (Vec3, Vec3)) -> Option<f64> {
     nearest
 }
 
-/// Returns two directions across a ray.
+/// Returns two directions perpendicular to a ray.
 fn across(v: Vec3) -> [Vec3; 2] {
     let along = unit(v).0;
     let axis = (0..3).fold(
@@ -205,7 +205,7 @@ impl HeightFieldRay<'_> {
         (self.p[k] + at * self.v[k] + self.field.size[k]) / self.steps[k]
     }
 
-    /// Returns the columns or rows that a part of the ray is over, and one more at each end.
+    /// Returns the columns or rows below a part of the ray, and one more at each end.
     fn range(&self, part: [f64; 2], k: usize, count: usize) -> Range<usize> {
         let [a, b] = part.map(|at| self.place(k, at));
         let last = (count - 1) as f64;
@@ -213,7 +213,7 @@ impl HeightFieldRay<'_> {
         first..(a.max(b).ceil() + 1.0).clamp(0.0, last) as usize
     }
 
-    /// Returns a height, of 1. Beyond its end MuJoCo 3.3.0 reads on into the fields that follow.
+    /// Returns a height, 0 to 1. Beyond the end of the field, MuJoCo 3.3.0 continues into the following fields.
     fn height(&self, place: usize) -> f64 {
         let mut left = place;
         for field in self.fields {
@@ -261,7 +261,7 @@ impl HeightFieldRay<'_> {
         }
     }
 
-    /// Keeps the nearest side that the ray meets below the edge of the surface; `upper` are the distances of the planes of the sides.
+    /// Keeps the nearest side that the ray hits below the edge of the surface; `upper` are the distances of the planes of the sides.
     fn sides(&self, upper: &[Option<f64>; 6], nearest: &mut Option<f64>) {
         let Self { field, p, v, .. } = *self;
         let (rows, columns) = (field.nrow, field.ncol);
@@ -288,7 +288,7 @@ impl HeightFieldRay<'_> {
     }
 }
 
-/// Returns the distance at which a ray from the origin meets a triangle; `basis` is across the ray.
+/// Returns the distance at which a ray from the origin meets a triangle; `basis` is perpendicular to the ray.
 fn ray_triangle([a, b, c]: [Vec3; 3], v: Vec3, basis: &[Vec3; 2]) -> Option<f64> {
     let plane = |p: Vec3| basis.map(|axis| dot(p, axis));
     let (pa, pb, pc) = (plane(a), plane(b), plane(c));
@@ -395,14 +395,14 @@ fn cuboid(size: Vec3, p: Vec3, v: Vec3) -> Option<f64> {
     least(&sides(size, p, v))
 }
 
-/// Returns the least of distances.
+/// Returns the smallest distance.
 fn least(all: &[Option<f64>]) -> Option<f64> {
     let mut nearest = None;
     all.iter().flatten().for_each(|&x| keep(&mut nearest, x));
     nearest
 }
 
-/// Returns where a ray meets the sides of a box: those of x, y and z, the lower one first.
+/// Returns where a ray meets the sides of a box: the sides of x, y and z, the lower one first.
 fn sides(size: Vec3, p: Vec3, v: Vec3) -> [Option<f64>; 6] {
     let mut all = [None; 6];
     if first(quadratic(dot(v, v), dot(v, p), dot(p, p) - dot(size, size))).is_none() {

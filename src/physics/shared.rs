@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use crate::table::Row;
 
-/// A value that copies share until one of them is written to, which then has its own: [`State::params`](crate::State::params).
+/// A value that copies share until one of them is written to, which then gets its own: [`State::params`](crate::State::params).
 ///
 /// It is read and written like the value itself. A value of one's own stays one's own: copies into it ([`Clone::clone_from`]) keep its memory, so that
 /// repeated writes allocate once.

@@ -13,8 +13,7 @@ use crate::state::{RESERVED_CONTACTS, State};
 use crate::topology::Topology;
 use crate::vectorize::vectorized;
 
-/// The options of [`SoftEngine`]. The default is MuJoCo 3.3.0's contact geometry with physically right torque
-/// sensors.
+/// The options of [`SoftEngine`]. The default is MuJoCo 3.3.0's contact geometry with physically correct torque sensors.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub struct SoftOptions {
     /// Peculiarities of MuJoCo 3.3.0's contact geometry to keep.
@@ -24,7 +23,7 @@ pub struct SoftOptions {
     pub double_weld_torque: bool,
     /// Detect no contacts.
     pub disable_contacts: bool,
-    /// Compute `cacc`, `cfrc_ext` and `cfrc_int` in every step, even where no sensor of the model reads them.
+    /// Compute `cacc`, `cfrc_ext` and `cfrc_int` in every step, even if no sensor of the model reads them.
     #[doc(alias = "mj_rnePostConstraint")]
     pub post_constraint: bool,
 }
@@ -77,7 +76,7 @@ pub struct SoftModel {
 }
 
 impl SoftModel {
-    /// Derives it from `model`.
+    /// Derives the shared part from `model`.
     pub fn new(model: Arc<Model>, options: SoftOptions) -> Self {
         Self {
             options,
@@ -114,12 +113,12 @@ impl SoftModel {
 }
 
 impl SoftEngine {
-    /// Makes an engine for `model`. Several engines of one model are cheaper from one [`SoftModel`].
+    /// Makes an engine for `model`. It is cheaper to create several engines of one model from one [`SoftModel`].
     pub fn new(model: Arc<Model>, options: SoftOptions) -> Self {
         SoftModel::new(model, options).engine()
     }
 
-    /// Tells the probe, if any, that a stage begins, or with `None` that the step is done.
+    /// Calls the probe, if any, with the stage that begins, or with `None` when the step is done.
     #[inline]
     fn mark(&mut self, stage: Option<Stage>) {
         if let Some(p) = &mut self.probe {

@@ -42,10 +42,9 @@ table! {
         pub qpos: [f64; model.nq] finite => model.qpos0.clone();
         /// Velocities (nv): m/s for translations; rad/s for rotations, those of balls and free joints in the body frame.
         pub qvel: [f64; model.nv] finite = 0.0;
-        /// Controls of the actuators (nu), in the unit of each actuator's control. With MIMo's muscles 1 while they pull and 0 while
-        /// they do not.
+        /// Controls of the actuators (nu), in the unit of each actuator's control. With MIMo's muscles, 1 while they pull and 0 while they do not.
         pub ctrl: [f64; model.nu()] finite = 0.0;
-        /// Activations of the actuators that have one (na), in their order and units. With MIMo's muscles theirs (2 nu), 0..1: muscle 1
+        /// Activations of the actuators that have one (na), in their order and units. With MIMo's muscles, their activations (2 nu), 0..1: muscle 1
         /// of every actuator, then muscle 2.
         pub act: [f64; any] finite => vec![0.0; model.na];
         /// Last targets of MIMo's actuators: excitations of muscles (2 nu), 0..1, or desired angles of position servos (nu), rad. Empty
@@ -62,8 +61,8 @@ table! {
         /// Force, N, and torque, N m, applied from outside to each body (nbody, 6) at its centre of mass `xipos`, world frame. They act
         /// in every step until a program changes them; [`State::apply_force`] adds to them.
         pub xfrc_applied: [[f64; 6]; model.nbody()] finite = [0.0; 6];
-        /// Positions of the mocap bodies (nmocap, 3), world frame, m; `body_mocapid` tells which they are. They have no velocity: what
-        /// a program throws or holds with one is attached to it by an equality.
+        /// Positions of the mocap bodies (nmocap, 3), world frame, m; `body_mocapid` tells which they are. They have no velocity: objects that a
+        /// program throws or holds with one are attached to it by an equality.
         pub mocap_pos: [Vec3; model.nmocap] finite => mocap(model).map(|b| model.body_pos[b]).collect();
         /// Orientations of the mocap bodies (nmocap, 4), world frame, quaternions `w, x, y, z` of any length.
         pub mocap_quat: [Quat; model.nmocap] finite => mocap(model).map(|b| model.body_quat[b]).collect();
@@ -146,7 +145,7 @@ table! {
         pub qm: [Tile; topology.tiles.tiles()] => topology.new_tiles();
         /// Contacts (ncon) in MuJoCo's order; [`Contact`] tells units and frames.
         pub contact: (Vec<Contact>) = Vec::with_capacity(RESERVED_CONTACTS);
-        /// Contacts of flexes, in MuJoCo's order; [`FlexContact`] tells how they are mixed with those of geoms there.
+        /// Contacts of flexes, in MuJoCo's order; [`FlexContact`] describes how they are mixed with contacts of geoms there.
         pub flex_contact: (Vec<FlexContact>) = Vec::new();
         /// Constraint rows.
         pub efc: (Efc) = Efc::with_capacity(model.nv, RESERVED_CONTACTS);
@@ -157,12 +156,12 @@ table! {
         pub cvel: [[f64; 6]; model.nbody()] = [0.0; 6];
         /// Time derivative of each motion axis `cdof` (nv, 6), world axes: rotation (3), 1/s, translation (3), m/s or 1/s.
         pub cdof_dot: [[f64; 6]; model.nv] = [0.0; 6];
-        /// Length of each actuator (nu): the coordinate of its joint or the length of its tendon, rad or m, times the gear; of a site
-        /// its displacement from the reference site along the gears; of a slider-crank that of the slider, m.
+        /// Length of each actuator (nu): the coordinate of its joint or the length of its tendon, rad or m, times the gear; for a site, its
+        /// displacement from the reference site along the gears; for a slider-crank, that of the slider, m.
         pub actuator_length: [f64; model.nu()] = 0.0;
         /// Rate of each actuator's length (nu), its unit per second; 0 where actuators are switched off.
         pub actuator_velocity: [f64; model.nu()] = 0.0;
-        /// Coriolis, centrifugal and gravity forces (nv): N or N m. They stand on the left of the equation of motion.
+        /// Coriolis, centrifugal and gravity forces (nv): N or N m. They are on the left side of the equation of motion.
         pub qfrc_bias: [f64; model.nv] = 0.0;
         /// Forces of springs, dampers, the medium and passive gravity compensation (nv): N or N m.
         pub qfrc_passive: [f64; model.nv] = 0.0;
@@ -173,11 +172,11 @@ table! {
         // acceleration stage
         /// Time derivatives of the activations (na), their unit per second. MIMo's muscles have none.
         pub act_dot: [f64; model.na] = 0.0;
-        /// Force of each actuator before the gear (nu): N or N m. With MIMo's muscles their torque on the joint, N m.
+        /// Force of each actuator before the gear (nu): N or N m. With MIMo's muscles, their torque on the joint, N m.
         pub actuator_force: [f64; model.nu()] = 0.0;
         /// Forces of the actuators on the degrees of freedom (nv): N or N m.
         pub qfrc_actuator: [f64; model.nv] = 0.0;
-        /// All forces but those of constraints (nv): N or N m.
+        /// All forces except those of constraints (nv): N or N m.
         pub qfrc_smooth: [f64; model.nv] = 0.0;
         /// Accelerations without constraints (nv): m/s^2 or rad/s^2.
         pub qacc_smooth: [f64; model.nv] = 0.0;
@@ -190,12 +189,12 @@ table! {
 
         // after constraints
         /// Acceleration of each body (nbody, 6) about the centre of mass of its tree, world axes: rotation (3), rad/s^2, translation
-        /// (3), m/s^2. Gravity is in it as an upward acceleration of the world.
+        /// (3), m/s^2. Gravity is included as an upward acceleration of the world.
         pub cacc: [[f64; 6]; model.nbody()] = [0.0; 6];
         /// External wrench on each body (nbody, 6) about the centre of mass of its tree, world axes: torque (3), N m, force (3), N, of
         /// contacts, connects, welds and `xfrc_applied`. The default engine computes it, with `cacc` and `cfrc_int`, where a sensor of
         /// the model reads one of them, as in environments, or where
-        /// [`SoftOptions::post_constraint`](crate::SoftOptions::post_constraint) asks for it; else it keeps its values.
+        /// [`SoftOptions::post_constraint`](crate::SoftOptions::post_constraint) requests it; otherwise it keeps its values.
         pub cfrc_ext: [[f64; 6]; model.nbody()] = [0.0; 6];
         /// Wrench that the parent exerts on each body (nbody, 6) about the centre of mass of its tree, world axes: torque (3), N m,
         /// force (3), N.
@@ -218,7 +217,7 @@ impl State {
         Self::first(model, topology)
     }
 
-    /// Copies what a continuation depends on: time, positions, velocities, controls, activations, applied forces, warm
+    /// Copies everything on which a continuation depends: time, positions, velocities, controls, activations, applied forces, warm
     /// start and parameters. The next step recomputes everything else. Between states of one model and one actuation model nothing is
     /// allocated.
     #[doc(alias("mj_copyData", "mj_setState"))]
@@ -226,9 +225,9 @@ impl State {
         self.copy_dynamic(other);
     }
 
-    /// Adds a force (N) at a point (m) and a torque (N m) to what acts on a body, all in the world frame: MuJoCo's
-    /// `mj_applyFT` into [`State::xfrc_applied`]. The point is taken with the body's present pose, that of the start of the
-    /// last step. The force acts in every step until [`State::release_forces`] or the next reset.
+    /// Adds a force (N) at a point (m) and a torque (N m) to the forces on a body, all in the world frame: MuJoCo's
+    /// `mj_applyFT` into [`State::xfrc_applied`]. The point refers to the body's current pose, which belongs to the start of the last step. The force
+    /// acts in every step until [`State::release_forces`] or the next reset.
     ///
     /// ```
     /// use mjcf_sim::Simulation;
@@ -265,7 +264,7 @@ impl State {
         Ok(())
     }
 
-    /// Moves the bodies that a program moves back to their places in the document.
+    /// Returns the bodies that a program moves to their positions in the document.
     pub fn rest_mocap(&mut self, model: &Arrays) {
         for (k, body) in mocap(model).enumerate() {
             self.mocap_pos[k] = model.body_pos[body];
@@ -278,8 +277,8 @@ impl State {
         self.xfrc_applied.fill([0.0; 6]);
     }
 
-    /// Returns the gears (nu) that the reference shows: its muscles act through the gears of the actuators, so with
-    /// muscles these are the muscles' torques, N m, and otherwise `params.actuator_gear`.
+    /// Returns the gears (nu) as in the reference. Its muscles act through the gears of the actuators, so with muscles these are the muscles'
+    /// torques, N m; otherwise they are `params.actuator_gear`.
     pub fn reference_gear(&self) -> &[f64] {
         if self.muscle_torque.is_empty() {
             &self.params.actuator_gear

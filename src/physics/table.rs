@@ -1,4 +1,4 @@
-//! A struct of arrays from one table: [`State`](super::State) and [`Params`](super::Params).
+//! Structs of arrays, each defined by a table: [`State`](super::State) and [`Params`](super::Params).
 //!
 //! A row is a field. From it follow the struct, its first value, copies that keep their memory, the check that it fits the
 //! model, and what a snapshot holds of it:
@@ -19,7 +19,7 @@
 
 use crate::error::EngineError;
 
-/// A row, or a struct of rows, as snapshots see it: its numbers and flags, in order.
+/// A row, or a struct of rows, for snapshots: its numbers and flags, in order.
 pub trait Row {
     /// Appends the numbers.
     fn numbers<'a>(&'a self, _: &mut Vec<&'a [f64]>) {}
@@ -154,7 +154,7 @@ macro_rules! table {
                 }
             }
 
-            /// Keeps the memory, so that nothing is allocated between values of one model.
+            /// Reuses memory, so that copying between values of one model allocates nothing.
             fn clone_from(&mut self, other: &Self) {
                 self.copy_dynamic(other);
                 $(self.$cfield.clone_from(&other.$cfield);)*
@@ -173,7 +173,7 @@ macro_rules! table {
                 $(self.$field.clone_from(&other.$field);)*
             }
 
-            /// Exchanges the dynamic fields, without copying a number.
+            /// Exchanges the dynamic fields without copying numbers.
             #[allow(dead_code, reason = "not every table is taken apart")]
             pub fn swap_dynamic(&mut self, other: &mut Self) {
                 $(std::mem::swap(&mut self.$field, &mut other.$field);)*
@@ -192,7 +192,7 @@ macro_rules! table {
                 Ok(())
             }
 
-            /// Checks that what a step reads is finite.
+            /// Checks that the inputs of a step are finite.
             pub fn finite(&self) -> Result<(), $crate::EngineError> {
                 $($($crate::table::$finite(concat!($prefix, stringify!($field)), &self.$field)?;)?)*
                 Ok(())

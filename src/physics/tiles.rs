@@ -16,7 +16,7 @@ pub type Tile = [Lanes; 4];
 /// No tile.
 pub const ZERO: Tile = [[0.0; 4]; 4];
 
-/// The tiles of a symmetric matrix that are stored: of each row those up to the diagonal, ascending.
+/// The stored tiles of a symmetric matrix: in each row those up to the diagonal, ascending.
 #[derive(Clone, Debug, Default)]
 pub struct Pattern {
     adr: Vec<usize>,
@@ -34,7 +34,7 @@ impl Pattern {
         pattern
     }
 
-    /// Drops all rows, keeps the memory.
+    /// Drops all rows but keeps the memory.
     pub fn clear(&mut self) {
         self.adr.clear();
         self.adr.push(0);
@@ -65,7 +65,7 @@ impl Pattern {
         self.cols.len()
     }
 
-    /// Returns the first tile of a row; of the number of rows, one past the last tile.
+    /// Returns the first tile of a row; for the number of rows, one past the last tile.
     #[inline]
     pub fn start(&self, row: usize) -> usize {
         self.adr[row]
@@ -78,7 +78,7 @@ impl Pattern {
     }
 }
 
-/// Computes `c -= a' b` for a diagonal tile: on and below the diagonal, and for some of the rest.
+/// Computes `c -= a' b` for a diagonal tile: on and below the diagonal, and some of the rest.
 #[inline(always)]
 pub(super) fn sub_transposed_product_diagonal(c: &mut Tile, a: &Tile, b: &Tile) {
     let mut sum = *c;

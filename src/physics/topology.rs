@@ -23,7 +23,7 @@ pub struct Topology {
     pub dof_tree: Vec<usize>,
     /// Start of each degree of freedom in `chain`; `nv + 1` values.
     row_adr: Vec<usize>,
-    /// Ancestors of each degree of freedom, ascending, itself last.
+    /// Ancestors of each degree of freedom, ascending, followed by itself.
     chain: Vec<u32>,
     /// The last degree of freedom that moves a body, if any does.
     pub body_last_dof: Vec<Option<usize>>,
@@ -35,7 +35,7 @@ pub struct Topology {
     pub tile_adr: Vec<usize>,
     /// Tiles of the inertia: each row of tiles has the tiles of its ancestors, which are a prefix of its descendants'.
     pub tiles: Pattern,
-    /// Tiles that move each body, with how many of their lanes do.
+    /// Tiles that move each body, with the number of their lanes that do.
     body_tiles: Vec<(u32, u32)>,
     body_tile_adr: Vec<usize>,
     /// Degrees of freedom that can change the length of each tendon.
@@ -46,7 +46,7 @@ pub struct Topology {
     pub slides_alone: Vec<bool>,
     /// The paths of spatial tendons.
     pub tendon_paths: TendonPaths,
-    /// Degrees of freedom on which actuators with a moment of their own act; those on joints and tendons have none.
+    /// Degrees of freedom on which actuators with their own moment act; actuators on joints and tendons have none.
     pub actuators: DofRows,
     /// Those actuators, by id.
     pub own_moments: Vec<usize>,
@@ -107,7 +107,7 @@ impl Topology {
         topology
     }
 
-    /// Deals degrees of freedom to tiles: as long as each is the child of the one before, four to a tile.
+    /// Assigns degrees of freedom to tiles, four per tile, as long as each is the child of the previous one.
     fn deal_tiles(&mut self, model: &Arrays) {
         for d in 0..model.nv {
             let slot = match model.dof_parentid[d] {
@@ -151,7 +151,7 @@ impl Topology {
         self.body_tile_adr.push(self.body_tiles.len());
     }
 
-    /// Returns the tiles that move `body`, ascending, with how many of their lanes do: the first ones.
+    /// Returns the tiles that move `body`, ascending, with the number of their lanes that do, which come first.
     #[inline]
     pub fn body_tiles(&self, body: usize) -> &[(u32, u32)] {
         &self.body_tiles[self.body_tile_adr[body]..self.body_tile_adr[body + 1]]
@@ -235,13 +235,13 @@ impl Topology {
         self.tree_adr.len() - 1
     }
 
-    /// Returns the ancestors of `dof`, ascending, itself last.
+    /// Returns the ancestors of `dof`, ascending, followed by itself.
     #[inline]
     pub fn dof_chain(&self, dof: usize) -> &[u32] {
         &self.chain[self.row_adr[dof]..self.row_adr[dof + 1]]
     }
 
-    /// Returns where the chain of `dof` begins among the entries of all chains; for `dof = nv` their number.
+    /// Returns where the chain of `dof` begins among the entries of all chains; for `dof = nv`, their number.
     #[inline]
     pub fn chain_start(&self, dof: usize) -> usize {
         self.row_adr[dof]
@@ -265,7 +265,7 @@ impl Topology {
         }
     }
 
-    /// Returns the degrees of freedom that move each of two bodies and not the other, ascending.
+    /// Returns the degrees of freedom that move only one of two bodies, for each of them, ascending.
     pub fn apart(&self, a: usize, b: usize) -> (&[u32], &[u32]) {
         let (chain_a, chain_b) = (self.body_chain(a), self.body_chain(b));
         let shared = chain_a.iter().zip(chain_b).take_while(|(a, b)| a == b).count();

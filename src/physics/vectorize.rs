@@ -1,7 +1,6 @@
-//! The instruction set that the hot parts of a step are compiled for.
+//! The instruction set for which the hot parts of a step are compiled.
 
-/// Runs `work` with the vector instructions that the processor has: those of AVX2, or else those that every processor of
-/// the target has.
+/// Runs `work` with the vector instructions that the processor supports: AVX2, or else those of every processor of the target.
 ///
 /// Code that is inlined into `work` is compiled once for each, so hot functions are `#[inline(always)]` down to their kernels,
 /// and `work` is a closure with the same attribute. The bits are those of any other target: the compiler neither reorders

@@ -1,5 +1,5 @@
-//! Goal babbling: an infant that learns to touch itself by trying movements, remembering what each of them let it feel, and doing
-//! again what leads to rare touches.
+//! Goal babbling: an infant that learns to touch itself by trying movements, remembering the resulting touches, and repeating movements that lead to
+//! rare ones.
 //!
 //! The idea is that of M. Rolf, J. J. Steil and M. Gienger, "Goal babbling permits direct learning of inverse kinematics" (2010), and of
 //! A. Baranes and P.-Y. Oudeyer, "Active learning of inverse models with intrinsically motivated goal exploration in robots" (2013):
@@ -17,18 +17,18 @@ use crate::env::Env;
 use crate::sensors::ProprioceptionComponent;
 use crate::spaces::NumpyRng;
 
-/// Durations of a new movement, s; one is drawn. MIMo's reaches take 0.1 to 0.4 s at his strength.
+/// Durations of a new movement, s; one is drawn at random. At his strength, MIMo's reaches take 0.1 to 0.4 s.
 const DURATIONS: [f64; 3] = [0.1, 0.2, 0.4];
 /// Shares of the decisions that repeat the most promising movement, vary it, and combine arms of two movements; the rest is random.
 const AGAIN: f64 = 0.4;
 const VARIED: f64 = 0.2;
 const COMBINED: f64 = 0.2;
-/// Standard deviations of variations, in half ranges of an action: one of these by chance.
+/// Standard deviations of variations, in half ranges of an action; one is drawn at random.
 const VARIATIONS: [f64; 4] = [0.05, 0.1, 0.2, 0.4];
-/// Share of variations that last for another time, and the spread of the logarithm of that time.
+/// Share of variations with another duration, and the spread of the logarithm of that duration.
 const RETIMED: f64 = 0.3;
 const RETIMING: f64 = 0.3;
-/// Bounds of a movement's time, s.
+/// Bounds of a movement's duration, s.
 const SHORTEST: f64 = 0.05;
 const LONGEST: f64 = 1.0;
 /// Weight of the last episode in the running frequency of each touch.
@@ -64,7 +64,7 @@ pub struct BabblingPolicy {
 }
 
 impl BabblingPolicy {
-    /// Makes a policy that knows nothing yet.
+    /// Makes an untrained policy.
     pub fn new() -> Self {
         Self::default()
     }
@@ -75,7 +75,7 @@ impl BabblingPolicy {
     }
 }
 
-/// The policy's knowledge of one body, and its present movement.
+/// The policy's knowledge of one body, and its current movement.
 #[derive(Clone, Debug)]
 struct BabblingLearner {
     arms: Arms,
@@ -89,7 +89,7 @@ struct BabblingLearner {
     dt: f64,
 }
 
-/// A movement on its way.
+/// The current movement.
 #[derive(Clone, Debug)]
 struct CurrentMovement {
     movement: Movement,
@@ -159,7 +159,7 @@ impl BabblingLearner {
         self.running = None;
     }
 
-    /// Notes what the palms feel now, as part of the movement on its way.
+    /// Records what the palms feel now, as part of the current movement.
     fn feel(&mut self, env: &Env) {
         if let Some(running) = &mut self.running {
             self.arms.feel(env, |pair| {
@@ -267,7 +267,7 @@ impl BabblingLearner {
         Movement { action, steps }
     }
 
-    /// Combines movements: each arm's part comes from the most promising one for its palm, the rest from the better of the two.
+    /// Combines movements: each arm's part comes from the most promising movement for its palm, the rest from the better of the two.
     fn combined(&self, choice: &BestMovements, best: usize) -> Movement {
         let mut movement = self.memory.movement(choice.lead().unwrap_or(best)).clone();
         for (hand, index) in choice.hands.iter().enumerate() {
@@ -285,7 +285,7 @@ impl BabblingLearner {
     }
 }
 
-/// Returns the joint angles as proprioception has them, rad, or m.
+/// Returns the joint angles from proprioception, rad or m.
 fn posture(env: &Env) -> Vec<f32> {
     let angles = env.senses().proprioception().range(ProprioceptionComponent::Angles);
     let all = env.observation().proprioception;

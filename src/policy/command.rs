@@ -17,7 +17,7 @@ pub const DEFAULT_LIMIT: Duration = Duration::from_secs(60);
 /// The time a command has to exit after the end of its input.
 const FAREWELL: Duration = Duration::from_secs(1);
 
-/// The fault of an answer that comes unasked, or with another one.
+/// The fault of an answer that was not requested, or that comes with another one.
 const UNASKED: &str = "more lines came than observations went, so that its answers no longer belong to them";
 
 /// A policy in another program, in any language: a line of JSON with the observation goes to its standard input, a line
@@ -223,7 +223,7 @@ fn write_lines(mut input: ChildStdin, lines: &Receiver<Vec<u8>>) {
     }
 }
 
-/// Passes lines on, each as soon as the one before is taken, until the output ends.
+/// Passes lines on, each as soon as the previous one is taken, until the output ends.
 fn read_lines(output: impl Read, longest: usize, lines: &SyncSender<std::io::Result<CommandReply>>) {
     let mut output = BufReader::new(output);
     loop {
@@ -337,7 +337,7 @@ fn kill_group(_: &Child) {}
 mod tests {
     use super::*;
 
-    /// Returns the answers of a program that writes this in one piece.
+    /// Returns the answers of a program that writes the given bytes at once.
     fn read(text: &[u8], longest: usize) -> Vec<CommandReply> {
         let (sender, answers) = sync_channel(100);
         read_lines(text, longest, &sender);

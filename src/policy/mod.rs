@@ -61,7 +61,7 @@ pub enum PolicyError {
         /// The episode and the step.
         when: EvaluationStep,
     },
-    /// The command does not answer.
+    /// The command did not answer.
     #[error(
         "the policy {command:?} gave no action within {seconds} s {when}; raise --policy-timeout for a slow policy"
     )]
@@ -73,7 +73,7 @@ pub enum PolicyError {
         /// The episode and the step.
         when: EvaluationStep,
     },
-    /// The command's answer is not an action.
+    /// The command's answer was not an action.
     #[error(
         "the policy {command:?} answered {answer:?} {when}: {reason}; it must write one line per observation to its \
          standard output, a JSON list of {expected} numbers; anything else belongs on its standard error"
@@ -173,7 +173,7 @@ impl Policy for ZeroPolicy {
     }
 }
 
-/// A policy that moves without looking: an [`ActionNoise`] whose seed is drawn from the environment's generator at the start of an
+/// A policy that ignores observations: an [`ActionNoise`] whose seed is drawn from the environment's generator at the start of an
 /// episode.
 #[derive(Clone, Debug)]
 pub struct NoisePolicy {
@@ -207,14 +207,14 @@ impl Policy for NoisePolicy {
     }
 }
 
-/// A policy as the command line names it.
+/// A policy, as named on the command line.
 #[derive(Clone, Debug, PartialEq)]
 pub enum PolicySource {
     /// `random`
     Random,
     /// `zero`
     Zero,
-    /// A noise that lasts: `held`, `ou`, `pink`, `color`, `color_by_age` or `oscillators`.
+    /// A correlated noise: `held`, `ou`, `pink`, `color`, `color_by_age` or `oscillators`.
     Noise(Noise),
     /// `babbling`: learns to touch itself while it acts.
     Babbling,

@@ -28,7 +28,7 @@ const OUTPUTS: [&str; 2] = ["action", "actions"];
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[non_exhaustive]
 pub enum OnnxError {
-    /// The file cannot be read, is not a model, or has operators that are not known.
+    /// The file cannot be read, is not a model, or has unknown operators.
     #[error("cannot load the model: {0}")]
     Load(String),
     /// An input is not among the active senses.
@@ -304,7 +304,7 @@ impl OnnxPolicy {
         }
     }
 
-    /// Returns the shape that an input gets, and which of the `fitting` ones it is.
+    /// Returns the shape that an input gets, and its index among the `fitting` ones.
     fn shape(&self, node: NodeId, name: &str, fitting: &[Vec<usize>]) -> Result<(Vec<usize>, usize), OnnxError> {
         let batch = |shape: &[usize]| [&[1], shape].concat();
         let Some(declared) = self.model.node_info(node).and_then(|i| i.shape()) else {

@@ -77,7 +77,7 @@ impl Serialize for NumberList<'_> {
     }
 }
 
-/// An image: its shape, NumPy's name of its type unless it is in colours, and its data, little-endian, in base64.
+/// An image: its shape, NumPy's name of its type unless it is a colour image, and its data, little-endian, in base64.
 #[derive(Serialize)]
 struct ImageMessage<'a> {
     shape: &'a [usize],
@@ -105,7 +105,7 @@ fn base64<S: Serializer>(data: &impl AsRef<[u8]>, serializer: S) -> Result<S::Ok
     serializer.collect_str(&Base64Display::new(data, &STANDARD))
 }
 
-/// Reads an answer, a JSON list of `expected` numbers, into `action`, or says what is wrong with it.
+/// Reads an answer, a JSON list of `expected` numbers, into `action`, or returns a description of the fault.
 pub(super) fn parse(answer: &str, expected: usize, action: &mut Vec<f32>) -> Result<(), String> {
     action.clear();
     if !answer.starts_with('[') {

@@ -1,4 +1,4 @@
-//! A policy that learns to look at its hands, from its eyes and its joints.
+//! A policy that learns to look at its hands, using its eyes and its joints.
 //!
 //! A hand is what moves in sight when that hand is moved, and does not when the other one is (J. S. Watson, "The development and
 //! generalization of contingency awareness in early infancy", 1966; P. Fitzpatrick and G. Metta, "Grounding vision through
@@ -18,11 +18,11 @@ use super::{Policy, PolicyError};
 use crate::env::Env;
 use crate::spaces::NumpyRng;
 
-/// Time in which a posture is taken, s.
+/// Time to take a posture, s.
 const SETTLING: f64 = 0.5;
-/// Time in which each wrist is moved, s.
+/// Time for moving each wrist, s.
 const MOVING: f64 = 0.25;
-/// Trials with random postures while no hand has been seen; afterwards, one in this many is random.
+/// All trials use random postures until a hand has been seen; afterwards, one in this many does.
 const RANDOM: f64 = 0.1;
 
 /// A policy that learns to look at its hands while it acts, using only its eyes and its joints; `watching` on the command line.
@@ -48,12 +48,12 @@ pub struct WatchingPolicy {
 }
 
 impl WatchingPolicy {
-    /// Makes a policy that knows nothing yet.
+    /// Makes an untrained policy.
     pub fn new() -> Self {
         Self::default()
     }
 
-    /// Returns how well both hands were seen in the best posture so far, 0 to 1.
+    /// Returns the visibility of both hands in the best posture so far, 0 to 1.
     pub fn best(&self) -> f64 {
         let trial = self.learner.as_ref().and_then(|learner| learner.archive.best());
         trial.map_or(0.0, |trial| 0.5 * trial.seen.iter().sum::<f64>())

@@ -7,7 +7,7 @@ use crate::single::single;
 use crate::texture::TexturePixels;
 use crate::view::Poses;
 
-/// Default colour of a geom; a geom that has it takes the colour of its material.
+/// Default colour of a geom; a geom with this colour takes that of its material.
 const DEFAULT_RGBA: [f32; 4] = [0.5, 0.5, 0.5, 1.0];
 /// Least opacity of a drawable that is not blended.
 pub(super) const OPAQUE: f32 = 0.995;
@@ -25,7 +25,7 @@ pub enum Element {
     Tendon {
         /// The tendon, by id.
         tendon: usize,
-        /// The piece, from the first on; how many there are changes as the tendon touches geoms and leaves them.
+        /// The index of the piece; the number of pieces changes as the tendon touches and leaves geoms.
         piece: usize,
     },
     /// An edge of a flex of lines.
@@ -72,7 +72,7 @@ pub struct Drawable {
     pub shape: Shape,
     /// Index into [`Scenery::meshes`](crate::Scenery::meshes), after which the parts of all flexes and skins are counted.
     pub mesh: usize,
-    /// Scale of the unit shape as the model has it, m; 1 for meshes of the model; a capsule's is radius, radius, half length, which is 1
+    /// Scale of the unit shape in the model, m; 1 for meshes of the model; a capsule's is radius, radius, half length, which is 1
     /// for a piece of a tendon and an edge of a flex. Images use [`Drawable::placed`].
     pub size: [f32; 3],
     /// Radius of the bounding sphere around its origin, m.
@@ -91,7 +91,7 @@ pub struct Drawable {
     pub texture_scale: [f32; 3],
     /// Offset of texture coordinates, see `texture_scale`.
     pub texture_offset: f32,
-    /// Where the light on a plane is computed, if its corners are not enough.
+    /// The points at which the light on a plane is computed, if its corners are not enough.
     pub(super) lattice: Option<Lattice>,
     /// Type and size of the element in the model.
     kind: GeomType,
@@ -100,7 +100,7 @@ pub struct Drawable {
     pub(super) rope: Vec3,
     /// Vertices of an edge of a flex, among those of all flexes; zeros for everything else.
     pub(super) ends: [usize; 2],
-    /// Half of each side that has no end, m.
+    /// Half of each infinite side, m.
     far: [f32; 2],
     /// Whether the texture keeps its scale when the size changes.
     texuniform: bool,
@@ -117,8 +117,7 @@ pub(super) fn material(model: &Model, element: Element) -> Option<usize> {
     }
 }
 
-/// Returns the shape of an element of the model, its scale and the radius of its bounding sphere (m). `far` is half of
-/// the sides of a plane that have no end.
+/// Returns the shape of an element of the model, its scale and the radius of its bounding sphere (m). `far` is half of each infinite side of a plane.
 fn dimensions(kind: GeomType, size: Vec3, far: [f32; 2]) -> (Shape, [f32; 3], f32) {
     let [a, b, c] = single(size);
     let length = |v: [f32; 3]| (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]).sqrt();

@@ -1,4 +1,4 @@
-//! Flexes: edges as cylinders, or a surface that a radius keeps off the vertices.
+//! Flexes: edges as cylinders, or a surface offset from the vertices by a radius.
 
 use super::drawable::Drawable;
 use super::skin::{SkinPart, parts};
@@ -33,13 +33,13 @@ pub struct FlexLook {
     first: usize,
     count: usize,
     radius: f64,
-    /// Triangles that have a part in the normals of their vertices.
+    /// Triangles that contribute to the normals of their vertices.
     smoothed: Vec<[usize; 3]>,
     corners: Vec<FlexCorner>,
     pub parts: Vec<SkinPart>,
 }
 
-/// Corners and faces of a surface in the making.
+/// Corners and faces of a surface under construction.
 struct Surface {
     corners: Vec<FlexCorner>,
     faces: Vec<[u32; 3]>,
@@ -60,7 +60,7 @@ impl Surface {
         }
     }
 
-    /// Adds a triangle with corners of its own.
+    /// Adds a triangle with its own corners.
     fn loose(&mut self, corners: [FlexCorner; 3]) {
         let first = self.corners.len() as u32;
         self.corners.extend(corners);
@@ -162,7 +162,7 @@ impl FlexLook {
 }
 
 impl Drawable {
-    /// Returns an edge of a flex as these poses have it.
+    /// Returns an edge of a flex in these poses.
     pub(super) fn stretched(&self, poses: &Poses) -> Option<(Self, Vec3, Mat3)> {
         let [from, to] = self.ends.map(|v| poses.flexvert_xpos.get(v).copied());
         let (from, to) = (from?, to?);

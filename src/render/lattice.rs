@@ -1,4 +1,4 @@
-//! Where the light on planes is computed: MuJoCo draws a plane as a grid of rectangles, whose corners are lit.
+//! The points at which the light on planes is computed: MuJoCo draws a plane as a grid of rectangles and lights their corners.
 //!
 //! The rules follow from pictures of MuJoCo 3.3.0. Lines lie at multiples of a step, counted from the middle of the plane, and along its
 //! edges. The step is twice the third number of `size`, or the 198th part of the plane where that is more. A direction without an end has
@@ -8,10 +8,10 @@ use crate::math::Vec3;
 #[cfg(any(test, feature = "wgpu"))]
 use crate::mesh::{Mesh, MeshPart};
 
-/// The largest number of rectangles along a side that has an end.
+/// The largest number of rectangles along a finite side.
 const CELLS: f32 = 198.0;
 
-/// The number of rectangles along a side without an end.
+/// The number of rectangles along an infinite side.
 const ENDLESS_CELLS: f32 = 200.0;
 
 /// The lines of a plane's grid.
@@ -21,11 +21,11 @@ pub struct Lattice {
     half: [f32; 2],
     /// Distance between lines in each direction, m.
     step: [f32; 2],
-    /// Distance by whole multiples of which the plane moves with the camera, m; 0 for a side that has an end.
+    /// Distance by whole multiples of which the plane moves with the camera, m; 0 for a finite side.
     stride: [f32; 2],
 }
 
-/// Returns half the side of a plane that has no end, and the distance by multiples of which it moves, m. `repeat` is the number of
+/// Returns half the length of an infinite side of a plane, and the distance by multiples of which it moves, m. `repeat` is the number of
 /// repetitions of its material's texture.
 fn endless(far: f32, repeat: Option<f64>) -> (f32, f32) {
     let half_stride = match repeat {
@@ -36,8 +36,8 @@ fn endless(far: f32, repeat: Option<f64>) -> (f32, f32) {
 }
 
 impl Lattice {
-    /// Returns the lines of a plane of a size. `far` is the distance of the far plane, m, and `repeat` how often the texture of its
-    /// material, if it has one, is repeated in each direction.
+    /// Returns the lines of a plane of a size. `far` is the distance of the far plane, m, and `repeat` is the number of repetitions of its material's
+    /// texture, if it has one, in each direction.
     pub fn new(size: Vec3, far: f32, repeat: Option<[f64; 2]>) -> Self {
         let spacing = 2.0 * size[2] as f32;
         let along = |direction: usize| match size[direction] as f32 {
@@ -55,7 +55,7 @@ impl Lattice {
         }
     }
 
-    /// Returns the lines of the plane with another size. `far` is half of each side that has no end, m.
+    /// Returns the lines of the plane with another size. `far` is half of each infinite side, m.
     pub fn resized(&self, size: Vec3, far: [f32; 2]) -> Self {
         let mut other = Self::new(size, 0.0, None);
         for direction in 0..2 {
@@ -73,7 +73,7 @@ impl Lattice {
         self.half
     }
 
-    /// Returns how far the plane moves in a direction if the camera is `away` from its middle, m.
+    /// Returns the distance by which the plane moves in a direction if the camera is `away` from its middle, m.
     pub fn shift(&self, direction: usize, away: f64) -> f64 {
         match f64::from(self.stride[direction]) {
             stride if stride > 0.0 => stride * (away / stride).round(),
@@ -81,7 +81,7 @@ impl Lattice {
         }
     }
 
-    /// Returns the lines on both sides of a place along a direction.
+    /// Returns the lines on both sides of a position along a direction.
     #[inline(always)]
     pub fn around(&self, direction: usize, at: f32) -> [f32; 2] {
         let (half, step) = (self.half[direction], self.step[direction]);
@@ -91,7 +91,7 @@ impl Lattice {
         [low.max(-half), (low + step).min(half)]
     }
 
-    /// Returns all lines in a direction, as parts of half the side.
+    /// Returns all lines in a direction, as fractions of half the side.
     #[cfg(any(test, feature = "wgpu"))]
     pub fn lines(&self, direction: usize) -> Vec<f32> {
         let (half, step) = (self.half[direction], self.step[direction]);

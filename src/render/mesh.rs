@@ -1,6 +1,6 @@
 //! The tessellations of MuJoCo's classic renderer: 28 slices, 16 stacks, 4 quads per box edge. Silhouettes and shading
-//! depend on them. Vertices lie on unit shapes; each [`MeshPart`] has a transform of its own. A mesh is cut into
-//! bands, so that those out of view need not be drawn.
+//! depend on them. Vertices lie on unit shapes; each [`MeshPart`] has its own transform. A mesh is cut into bands, so that bands out of view need not
+//! be drawn.
 
 use std::f64::consts::PI;
 
@@ -13,7 +13,7 @@ const QUADS: usize = 4;
 /// Number of stacks of a cylinder in a band.
 const BAND_STACKS: usize = 4;
 
-/// A part of a mesh with a transform of its own: the caps of a capsule stay at the ends of the scaled cylinder.
+/// A part of a mesh with its own transform: the caps of a capsule stay at the ends of the scaled cylinder.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MeshPart {
     /// Vertices scaled by the size.
@@ -24,13 +24,13 @@ pub enum MeshPart {
     Bottom,
 }
 
-/// The most vertices of a mesh: triangles count them in 16 bits, and a mesh is filled up to whole groups.
+/// Maximum number of vertices of a mesh: triangles count them in 16 bits, and a mesh is padded to whole groups.
 pub(super) const MOST: usize = (1 << 16) - LANES;
 
 /// A part of a mesh, or a slice of one, that has its own vertices.
 #[derive(Clone, Debug)]
 pub struct Band {
-    /// Part that it belongs to.
+    /// The part to which it belongs.
     pub part: MeshPart,
     /// Vertices.
     pub vertices: std::ops::Range<usize>,
@@ -61,9 +61,9 @@ pub struct Mesh {
     pub z: Vec<f32>,
     /// Unit normals of the vertices.
     pub normal: Vec<[f32; 3]>,
-    /// Texture coordinates of the vertices; empty where they follow from places.
+    /// Texture coordinates of the vertices; empty if they follow from positions.
     pub texcoord: Vec<[f32; 2]>,
-    /// Part that each vertex belongs to.
+    /// The part to which each vertex belongs.
     part: Vec<MeshPart>,
     /// Bands, in the order of their vertices and triangles.
     pub bands: Vec<Band>,
@@ -221,7 +221,7 @@ impl Mesh {
         });
     }
 
-    /// Fills up the current band with copies of its last vertex, so that vertices are projected in whole groups.
+    /// Pads the current band with copies of its last vertex, so that vertices are projected in whole groups.
     pub(super) fn fill(&mut self) {
         while let Some(last) = self.x.len().checked_sub(1)
             && !self.x.len().is_multiple_of(LANES)
@@ -233,7 +233,7 @@ impl Mesh {
         }
     }
 
-    /// Ends a mesh of one band whose triangles are in no strip.
+    /// Completes a mesh of one band whose triangles are in no strip.
     pub(super) fn end_loose(&mut self) {
         self.fill();
         if let Some(band) = self.bands.last_mut() {

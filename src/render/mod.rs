@@ -80,7 +80,7 @@ use mjcf_sim_model::{assets, formats, limits, math, model, pool, threads};
 /// Longest side of a picture, pixels.
 pub const MAX_SIZE: usize = 4096;
 
-/// A reason why something cannot be drawn.
+/// An error in drawing.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum RenderError {

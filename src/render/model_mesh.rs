@@ -1,4 +1,4 @@
-//! Meshes and height fields of the model, as pictures need them.
+//! Meshes and height fields of the model, prepared for pictures.
 
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -7,7 +7,7 @@ use super::drawable::Element;
 use super::mesh::{MOST, Mesh, MeshPart};
 use crate::model::{self, GeomType, HField, Model};
 
-/// Least cosine between the normal of a vertex and that of a face for the face to be smooth there.
+/// Smallest cosine between the normals of a vertex and a face for which the face is smooth there.
 const SMOOTH: f32 = 0.8;
 
 /// The meshes and height fields of a model that are drawn, each cut into parts.
@@ -16,7 +16,7 @@ pub struct ModelMeshes {
     hfields: Vec<Option<Range<usize>>>,
 }
 
-/// A corner of a triangle: vertex, normal to the bit, texture coordinates.
+/// A corner of a triangle: vertex, exact bits of the normal, texture coordinates.
 type MeshCorner = (u32, [u32; 3], u32);
 
 impl ModelMeshes {
@@ -54,7 +54,7 @@ impl ModelMeshes {
     }
 }
 
-/// A part of a mesh that is being made.
+/// A part of a mesh under construction.
 struct PartBuilder {
     mesh: Mesh,
     known: BTreeMap<MeshCorner, u16>,
@@ -78,7 +78,7 @@ impl PartBuilder {
     }
 }
 
-/// Makes the parts of a mesh. Faces that turn away from the normal of a vertex have their own there, unless the mesh has texture
+/// Makes the parts of a mesh. Faces that turn away from the normal of a vertex have their own normal there, unless the mesh has texture
 /// coordinates, as in MuJoCo.
 fn cut(source: &model::Mesh, meshes: &mut Vec<Mesh>) {
     let mut part = PartBuilder::new();
@@ -112,7 +112,7 @@ fn cut(source: &model::Mesh, meshes: &mut Vec<Mesh>) {
     part.finish(meshes);
 }
 
-/// Number of rectangles of each side of the base, as MuJoCo's renderer has it.
+/// Number of rectangles on each side of the base, as in MuJoCo's renderer.
 const QUADS: usize = 4;
 
 /// Makes the parts of a height field: flat triangles of its surface, its sides and its base.

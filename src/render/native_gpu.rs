@@ -1,4 +1,4 @@
-//! A renderer on a GPU as several environments share it, in programs that can wait for its images.
+//! A renderer on a GPU that several environments share, for programs that can wait for its images.
 
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 

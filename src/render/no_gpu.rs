@@ -1,4 +1,4 @@
-//! Replaces the renderer on a GPU in programs that have none, or that cannot wait for its images, such as a page. Its types have no
+//! Replaces the GPU renderer in programs without one, or that cannot wait for its images, such as a page. Its types have no
 //! values, so no other code has to check how the library was built.
 
 use std::sync::Arc;

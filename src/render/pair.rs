@@ -9,10 +9,10 @@ use crate::threads::{Job, PARALLEL, ThreadPool};
 use crate::view::ImageBuffers;
 use crate::{CpuRenderer, Poses, RenderError, RenderRequest, Scenery, View};
 
-/// Draws two images at once, one of them on a thread of its own. The thread starts with the first pair of images.
+/// Draws two images at once, one of them on a separate thread. The thread starts with the first pair of images.
 #[derive(Default)]
 pub struct PairRenderer {
-    /// The drawing, while the thread does not have it.
+    /// The drawing state, while the thread does not hold it.
     drawing: Option<Box<DrawingJob>>,
     thread: Option<DrawingThread>,
 }
@@ -92,7 +92,7 @@ impl PairRenderer {
         self.thread.as_ref()
     }
 
-    /// Forgets a thread of the parent process. A fork copies memory but not threads, so joining it would wait for ever.
+    /// Forgets a thread of the parent process. A fork copies memory but not threads, so joining it would block forever.
     fn leave_behind(&mut self) {
         std::mem::forget(self.thread.take());
     }
@@ -123,7 +123,7 @@ struct DrawingJob {
     depth: Image<f32>,
     segmentation: Image<i32>,
     outcome: Result<(), RenderError>,
-    /// The payload of a panic. The mutex is there to make the type `Sync`, which a payload alone is not.
+    /// The payload of a panic. The mutex makes the type `Sync`; a payload alone is not.
     panicked: Mutex<Option<Box<dyn Any + Send>>>,
 }
 
@@ -147,7 +147,7 @@ impl DrawingJob {
         }
     }
 
-    /// Takes over a request, and makes room for as many values as `images` has.
+    /// Takes over a request, and reserves memory for as many values as `images` has.
     fn take_up(&mut self, request: &RenderRequest, images: &ImageBuffers<'_>) {
         self.view = request.view;
         self.poses.copy_from(&request.poses);

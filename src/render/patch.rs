@@ -5,11 +5,10 @@ use super::strip::{LANES, STRIP_LANES, Strip};
 /// The bits of all quadrilaterals of a patch.
 pub const ALL: u8 = 15;
 
-/// Four quadrilaterals of a strip: their planes, and where their vertices are.
+/// Four quadrilaterals of a strip: their planes, and the groups of their vertices.
 #[derive(Clone, Debug)]
 pub struct Patch {
-    /// Outward normals of the planes, by component; each is as long as the parallelogram over the smaller of the two triangles
-    /// is large.
+    /// Outward normals of the planes, by component; the length of each is the area of the parallelogram over the smaller of the two triangles.
     pub normal: [[f32; STRIP_LANES]; 3],
     /// Distances of the planes from the origin, times the lengths of the normals.
     pub offset: [f32; STRIP_LANES],
@@ -18,7 +17,7 @@ pub struct Patch {
 }
 
 impl Patch {
-    /// Creates a patch of the quadrilaterals of a strip from `first` on; `at` gives the places of vertices.
+    /// Creates a patch of the quadrilaterals of a strip starting at `first`; `at` returns the positions of vertices.
     pub fn new(strip: &Strip, first: usize, at: impl Fn(u16) -> [f32; 3]) -> Self {
         let mut patch = Self {
             normal: [[0.0; STRIP_LANES]; 3],
@@ -48,7 +47,7 @@ impl Patch {
 
 type PatchPlane = ([f64; 3], f64);
 
-/// Returns the plane of a triangle: its normal, as long as the parallelogram is large, and the offset.
+/// Returns the plane of a triangle: its normal, whose length is the area of the parallelogram, and the offset.
 fn plane(corners: [[f32; 3]; 3]) -> PatchPlane {
     let [a, b, c] = corners.map(|v| v.map(f64::from));
     let minus = |p: [f64; 3], q: [f64; 3]| [p[0] - q[0], p[1] - q[1], p[2] - q[2]];

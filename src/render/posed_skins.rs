@@ -47,7 +47,7 @@ impl PosedSkins {
         }
     }
 
-    /// Returns the mesh of a drawable, which is that of a flex or skin or one of the scenery.
+    /// Returns the mesh of a drawable: that of a flex or skin, or one of the scenery.
     #[inline(always)]
     pub fn mesh<'a>(&'a self, scenery: &'a Scenery, drawable: &Drawable) -> &'a Mesh {
         match drawable.mesh.checked_sub(scenery.meshes.len()) {

@@ -20,7 +20,7 @@ enum Backend {
         memory: BufferSource,
         /// Passes over the scene's geometry by the caller's thread.
         passes: u64,
-        /// The second thread, if there is one, which draws every second image.
+        /// The second thread, if any, which draws every second image.
         pair: Option<PairRenderer>,
     },
     Gpu(SharedGpu),
@@ -55,7 +55,7 @@ impl Clone for BufferSource {
     }
 }
 
-/// A copy draws the same scene by as many threads; on a GPU, both share it.
+/// A copy draws the same scene with as many threads; on a GPU, both share the renderer.
 impl Clone for Renderer {
     fn clone(&self) -> Self {
         let backend = match &self.backend {
@@ -110,7 +110,7 @@ impl Renderer {
 
     /// Sets whether two images are drawn at once on the CPU, by the caller and one more thread, which starts with the first
     /// such pair: 2, or 1, the default. The bytes are the same. More than 2 means 2, and 0 means 1; without the feature
-    /// `parallel`, in WebAssembly, on one core, and where the system gives no thread, the caller draws alone.
+    /// `parallel`, in WebAssembly, on one core, and if the system provides no thread, the caller draws alone.
     pub fn set_threads(&mut self, threads: usize) {
         match &mut self.backend {
             Backend::Cpu { pair, .. } if threads > 1 && PairRenderer::is_of_use() => drop(pair.get_or_insert_default()),

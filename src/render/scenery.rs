@@ -18,7 +18,7 @@ use crate::visible::{SceneryShapes, UsedTextures, drawables};
 /// Number of lights that fixed-function OpenGL guarantees.
 const MAX_LIGHTS: usize = 8;
 
-/// A light, as the model has it.
+/// A light of the model.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LightSource {
     /// Body that carries it, by id.
@@ -27,7 +27,7 @@ pub struct LightSource {
     pub pos: Option<Vec3>,
     /// Unit direction in the body.
     pub dir: Vec3,
-    /// The element that it follows.
+    /// The body that it follows.
     pub aim: LightAim,
     /// Ambient colour.
     pub ambient: [f32; 3],
@@ -78,16 +78,16 @@ pub enum LightAim {
     },
 }
 
-/// A camera, as the model has it.
+/// A camera of the model.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Camera {
     /// Vertical field of view, degrees.
     pub fovy: f64,
     /// Half the width of its sensor over its horizontal focal length. Without a sensor, the width of a picture follows from its height.
     pub half_width: Option<f64>,
-    /// Whether the axis of its lens meets the middle of its sensor: others are not drawn.
+    /// Whether the axis of its lens meets the middle of its sensor; other cameras cannot be drawn.
     pub centred: bool,
-    /// Whether its rays are parallel: such cameras are not drawn.
+    /// Whether its rays are parallel; such cameras cannot be drawn.
     pub orthographic: bool,
 }
 
@@ -120,7 +120,7 @@ pub struct Scenery {
     pub textures: Vec<TexturePixels>,
     /// Index of the background in `textures`.
     pub sky: Option<usize>,
-    /// Lights; the headlight, if it is on, is not among them.
+    /// Lights, without the headlight.
     pub lights: Vec<LightSource>,
     /// Ambient, diffuse and specular colour of the headlight, which shines along every camera; `None` if it is off.
     pub headlight: Option<[[f32; 3]; 3]>,
@@ -229,8 +229,8 @@ impl Scenery {
         })
     }
 
-    /// Returns the mesh of a drawable; that of a flex or skin is as the model has it, and has no normals: [`PosedSkins`](crate::PosedSkins)
-    /// has those of a moment.
+    /// Returns the mesh of a drawable; that of a flex or skin is in the pose of the model and has no normals; [`PosedSkins`](crate::PosedSkins) has
+    /// the mesh of a moment.
     pub fn mesh_of(&self, drawable: &Drawable) -> Option<&Mesh> {
         let soft = self.soft_parts().map(|part| &part.mesh);
         self.meshes.iter().chain(soft).nth(drawable.mesh)

@@ -1,4 +1,4 @@
-//! Single precision, in which MuJoCo draws.
+//! Rounding to single precision, in which MuJoCo draws.
 
 /// Rounds numbers to single precision.
 pub(super) fn single<const N: usize>(v: [f64; N]) -> [f32; N] {

@@ -18,10 +18,10 @@ pub struct SkinLook {
 #[derive(Clone, Debug)]
 pub struct Bone {
     pub body: usize,
-    /// Inverse of the orientation of the body where the skin is as written, and its position there, m.
+    /// Inverse of the body's orientation in the bind pose, and its position there, m.
     pub turned: Mat3,
     pub from: Vec3,
-    /// Vertices that it pulls, and its share of each.
+    /// Vertices that it pulls, and its weight for each.
     pub pulls: Vec<(u32, f64)>,
 }
 
@@ -57,7 +57,7 @@ impl SkinLook {
     }
 }
 
-/// Cuts faces into parts. Vertices without texture coordinates have none at all.
+/// Cuts faces into parts. If vertices lack texture coordinates, the parts have none.
 pub fn parts(vert: &[[f32; 3]], mut faces: &[[u32; 3]], texcoord: &[[f32; 2]]) -> Vec<SkinPart> {
     let mut parts = Vec::new();
     while !faces.is_empty() {

@@ -1,15 +1,15 @@
-//! Rows of quadrilaterals, of which meshes consist.
+//! Rows of quadrilaterals, the building blocks of meshes.
 
-/// Number of vertices of which the length of each band of a mesh is a multiple.
+/// The number of vertices of each band of a mesh is a multiple of this.
 pub const LANES: usize = 8;
 
-/// Number of quadrilaterals of which the length of each strip is a multiple.
+/// The number of quadrilaterals of each strip is a multiple of this.
 pub const STRIP_LANES: usize = 4;
 
-/// A row of quadrilaterals, each split into two triangles: [a, b, d] and [b, c, d]. A fan has only the first of each two.
+/// A row of quadrilaterals, each split into two triangles: [a, b, d] and [b, c, d]. A fan has only the first of both.
 #[derive(Clone, Copy, Debug)]
 pub struct Strip {
-    /// Corners a, b, c, d of the first.
+    /// Corners a, b, c, d of the first quadrilateral.
     pub first: [u16; 4],
     /// Increment of each corner from one quadrilateral to the next, 0 or 1.
     pub step: [u16; 4],

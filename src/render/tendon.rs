@@ -1,21 +1,21 @@
-//! Spatial tendons: a capsule for each straight piece of the path, half as wide where it runs over a geom. One that only has a
-//! greatest length hangs between its two sites in a catenary, as a rope does.
+//! Spatial tendons: a capsule for each straight piece of the path, half as wide where it runs over a geom. A tendon with only a greatest length hangs
+//! between its two sites in a catenary, like a rope.
 
 use super::drawable::{Drawable, Element};
 use super::view::Poses;
 use crate::math::{MINVAL, Mat3, Vec3, add, add_scaled, dot, norm, scale, sub, unit};
 use crate::model::{Model, TrnType, Wrap};
 
-/// Points of a catenary at even distances. MuJoCo leaves out the last but one.
+/// Evenly spaced points of a catenary. MuJoCo leaves out the last but one.
 const POINTS: usize = 30;
 /// Pieces of a catenary.
 const HANGING: usize = POINTS - 2;
-/// Horizontal distance of the ends, relative to the length, below which a rope hangs straight down from both.
+/// Horizontal distance between the ends, relative to the length, below which a rope hangs straight down from both.
 const NARROW: f64 = 0.01;
 /// Mark in [`Poses::wrap_obj`] of a pulley, where the path is interrupted.
 const PULLEY: i32 = -2;
 
-/// Lists the elements that may show a tendon; `rope` is that of [`ropes`].
+/// Lists the elements that may show a tendon; `rope` is its entry in [`ropes`].
 pub fn pieces(model: &Model, tendon: usize, rope: Vec3) -> impl Iterator<Item = Element> {
     let points = |wrap: &Wrap| match wrap {
         Wrap::Joint { .. } => 0,
@@ -32,8 +32,8 @@ pub fn pieces(model: &Model, tendon: usize, rope: Vec3) -> impl Iterator<Item = 
     })
 }
 
-/// Returns for each tendon the upward direction times its greatest length, m, if it hangs loose between two sites; zeros for others: those
-/// that something pulls, damps or holds.
+/// Returns for each tendon the upward direction times its greatest length, m, if it hangs loose between two sites; zeros for others, which something
+/// pulls, damps or holds.
 pub fn ropes(model: &Model) -> Vec<Vec3> {
     let mut pulled = vec![false; model.ntendon()];
     for (kind, &target) in model.actuator_trntype.iter().zip(&model.actuator_trnid) {
@@ -102,7 +102,7 @@ pub(super) fn along([x, y, z]: Vec3) -> Mat3 {
     [1.0 - x * x * turn, mixed, x, mixed, 1.0 - y * y * turn, y, -x, -y, z]
 }
 
-/// Returns the ends of a piece of a rope between two points; `None` if it has fewer. `rope` is that of [`ropes`].
+/// Returns the ends of a piece of a rope between two points; `None` if it has fewer. `rope` is its entry in [`ropes`].
 fn hanging(from: Vec3, to: Vec3, rope: Vec3, piece: usize) -> Option<[Vec3; 2]> {
     let (up, length) = unit(rope);
     let apart = sub(to, from);

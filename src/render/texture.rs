@@ -16,8 +16,8 @@ pub use cube::{Cube, components};
 use pattern::{Mt19937, cube_builtin, flat_builtin, truncated};
 pub use plain::SETTLED;
 
-/// Largest side of a texture, pixels: images are halved while loading until they fit, so that the original's textures
-/// of 2500 and 5000 pixels stay small.
+/// Largest side of a texture, pixels: images are halved during loading until they fit, which keeps the original's textures of 2500 and 5000 pixels
+/// small.
 pub const MAX_TEXTURE: usize = 1024;
 /// Largest side of a builtin pattern, pixels.
 const MAX_PATTERN: usize = Limits::DEFAULT.picture_side as usize;
@@ -136,9 +136,9 @@ impl MipLevel {
 /// A loader of textures that decodes an image used by several only once.
 pub struct TextureLoader<'a> {
     assets: &'a dyn AssetSource,
-    /// By path, and how they are mirrored.
+    /// Images by path and mirroring.
     faces: BTreeMap<(String, [bool; 2]), MipChain>,
-    /// Pixels that may still be made.
+    /// Number of pixels that may still be created.
     left: usize,
 }
 
@@ -277,7 +277,7 @@ impl<'a> TextureLoader<'a> {
         Ok(TexturePixels::Cube(Cube::new(faces)))
     }
 
-    /// Counts the pixels of a texture before time and memory are spent on them. Fails if there are too many.
+    /// Counts the pixels of a texture before they are created. Fails if there are too many.
     fn take(&mut self, pixels: usize) -> Result<(), String> {
         let Some(left) = self.left.checked_sub(pixels) else {
             let most = Limits::DEFAULT.texture_pixels;

@@ -71,8 +71,8 @@ pub struct FreeCamera {
 }
 
 impl FreeCamera {
-    /// Returns the camera with which MuJoCo's viewer begins: it looks at the centre of the model from 1.5 times its extent, in the direction
-    /// that the model gives, by default along y and downwards.
+    /// Returns the initial camera of MuJoCo's viewer: it looks at the centre of the model from 1.5 times its extent, in the model's direction, by
+    /// default along y and downwards.
     #[doc(alias = "mjv_defaultFreeCamera")]
     pub fn of(model: &Model) -> Self {
         Self {
@@ -177,7 +177,7 @@ pub struct ImageBuffers<'a> {
     /// Brightness by the weights 0.2989, 0.5870, 0.1140, (H, W).
     pub gray: Option<&'a mut [u8]>,
     /// Distance (m) from the camera's plane to the surface at the centre of each pixel, (H, W); infinite where there is
-    /// nothing. Transparent things are not drawn.
+    /// nothing. Transparent drawables are left out.
     pub depth: Option<&'a mut [f32]>,
     /// The id of the geom at the centre of each pixel, (H, W); -1 where there is none. Sites and tendons occlude geoms
     /// behind them, and so do transparent geoms.

@@ -1,4 +1,4 @@
-//! What of a model is drawn: its visible elements, with their meshes and textures.
+//! The parts of a model that are drawn: its visible elements, with their meshes and textures.
 
 use crate::RenderError;
 use crate::drawable::{Drawable, Element, OPAQUE, Shape, material};
@@ -110,7 +110,7 @@ fn flexes(model: &Model) -> impl Iterator<Item = Element> + '_ {
     edges.chain(visible().filter(|&f| model.flexes[f].dim > 1).map(Element::Flex))
 }
 
-/// The textures that some drawable uses. Others are not decoded.
+/// The textures that drawables use. Others are not decoded.
 pub(super) struct UsedTextures<'a> {
     pub model: &'a Model,
     pub loader: Option<TextureLoader<'a>>,

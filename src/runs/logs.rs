@@ -125,7 +125,7 @@ fn check_inside(path: &Path) -> Result<(), LogError> {
     let (Ok(run), Ok(target)) = (run.canonicalize(), path.canonicalize()) else {
         return Ok(());
     };
-    // a folder that someone else made must not lead this program to read or overwrite files outside of it
+    // a folder that someone else made must not lead this program to read or overwrite files outside it
     if target.starts_with(&run) {
         Ok(())
     } else {
@@ -164,7 +164,7 @@ fn read_pickle(path: &Path, limits: &Limits) -> Result<Value, LogError> {
     })
 }
 
-/// Returns a whole number as Python's.
+/// Converts a whole number to Python's.
 fn whole(n: u64) -> i64 {
     // a pickle's whole numbers are signed here; no counter of a run comes near the bound
     i64::try_from(n).unwrap_or(i64::MAX)

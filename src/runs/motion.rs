@@ -1,4 +1,4 @@
-//! Motions: joint angles over time, from a video of an infant, a motion capture or a record, and MIMo's senses while he follows them.
+//! Motions: joint angles over time, from a video of an infant, a motion capture or a record, and MIMo's sensations while he follows them.
 
 mod check;
 mod play;
@@ -135,7 +135,7 @@ impl Motion {
         Self::new_with(names, rate, angles, root, &Limits::DEFAULT)
     }
 
-    /// Creates a motion, as [`Motion::new`] does, within limits of the caller's choice.
+    /// Creates a motion, as [`Motion::new`] does, within the given limits.
     ///
     /// # Errors
     /// As [`Motion::new`].

@@ -1,4 +1,4 @@
-//! Records of runs: self-describing folders with everything that happened, for analysis and for replay.
+//! Records of runs: self-describing folders with everything that happened, for analysis and replay.
 //!
 //! A folder has `manifest.json` ([`Manifest`]) and a NumPy archive for each episode. In Python two lines read one:
 //!
@@ -122,8 +122,8 @@ fn numbers(there: &[u64]) -> String {
 /// Further contents of a record, besides states, actions, touch, contacts, rewards and information.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct RecordOptions {
-    /// Whether every other sense is recorded as observed, step by step. Without it they are left to a replay, which has the same bits:
-    /// they would take more space than everything else.
+    /// Whether every other sense is recorded as observed, step by step. Otherwise they are left to a replay, which has the same bits, because they
+    /// would take more space than everything else.
     pub senses: bool,
     /// Interval, in steps, at which both eyes are recorded, starting with the first step of an episode; `None` for never.
     pub eyes_every: Option<u64>,
@@ -227,7 +227,7 @@ impl Recorder {
         self.rows.as_ref().is_some_and(|(_, rows)| rows.len() > 0)
     }
 
-    /// Starts recording an episode from the current moment on, under a number that no other episode of the folder has. An episode that
+    /// Starts recording an episode at the current moment, under a number that no other episode in the folder has. An episode that
     /// was not ended is lost.
     pub fn begin(&mut self, env: &Env, episode: u64) {
         let options = &self.shared.options;
@@ -261,16 +261,16 @@ impl Recorder {
         self.push(env, action, drawn)
     }
 
-    /// Records a step. `drawn` is how many numbers the generator had drawn before it.
+    /// Records a step. `drawn` is the number of values that the generator had drawn before it.
     fn push(&mut self, env: &Env, action: &[f32], drawn: u64) -> Result<(), RecordError> {
         let (_, rows) = self.rows.as_mut().ok_or(RecordError::NotBegun)?;
         rows.push(env, action, drawn, &self.shared.options);
         Ok(())
     }
 
-    /// Records the current moment of an environment as a step, with the action that is said to have led to it, for steps that a program
-    /// composes itself ([`Env::by_hand`]). A replay, which knows only actions, finds other bits there. Images that
-    /// [`SensesMut::look`](crate::env::SensesMut::look) has yet to draw are not recorded.
+    /// Records the current moment of an environment as a step, with the given action as its cause, for steps that a program composes itself
+    /// ([`Env::by_hand`]). A replay, which knows only actions, finds different bits there. Images that
+    /// [`SensesMut::look`](crate::env::SensesMut::look) has not drawn yet are not recorded.
     ///
     /// # Errors
     /// No episode has begun; an action of wrong length or with numbers that are not finite.

@@ -1,4 +1,4 @@
-//! Replays of recordings: same start, same actions, and everything the environment produces.
+//! Replays of recordings: same start, same actions, and everything that the environment then produces.
 
 mod output;
 mod recording;

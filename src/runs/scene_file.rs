@@ -45,10 +45,10 @@ pub enum SceneFileError {
         /// Description of the fault.
         reason: String,
     },
-    /// A scene that does not load.
+    /// The scene does not load.
     #[error("cannot load the scene: {0}")]
     Load(#[from] LoadError),
-    /// A custom scene that cannot be read.
+    /// The custom scene cannot be read.
     #[error(transparent)]
     CustomScene(#[from] CustomSceneError),
     /// The folder holds the scene of another run.
@@ -64,7 +64,7 @@ pub enum SceneFileError {
         /// The expected kind.
         wanted: String,
     },
-    /// A scene without a configuration in its comment, or with an invalid one.
+    /// The comment of the scene has no configuration, or an invalid one.
     #[error("invalid configuration in the comment of the scene: {0}")]
     Config(#[from] ConfigError),
 }
@@ -188,7 +188,7 @@ fn same_ids(a: &Model, b: &Model) -> bool {
     a.nq == b.nq && a.body_name == b.body_name && a.jnt_name == b.jnt_name && a.geom_bodyid == b.geom_bodyid
 }
 
-/// Describes what decides the ids of a scene: the scene and the version of MIMo.
+/// Describes what determines the ids of a scene: the scene and the version of MIMo.
 fn about(config: &Config) -> String {
     let version = Version::label(config);
     if has_own_scene(config.behavior) {

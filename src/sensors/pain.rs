@@ -28,7 +28,7 @@ pub struct Pain {
 }
 
 impl Pain {
-    /// Creates the sense for a skin; every body has the softness and the sensitivity 1.
+    /// Creates the sense for a skin; every body has softness 1 and sensitivity 1.
     pub fn new(model: &Model, layout: Arc<SkinLayout>, config: &Config) -> Self {
         let (compat, response) = (config.compat, config.touch_response);
         Self {
@@ -41,12 +41,12 @@ impl Pain {
         }
     }
 
-    /// Returns the softness of each body, by id, to be changed: the factor on the forces with which it presses others.
+    /// Returns the softness of each body, by id, for changes: the factor on the forces with which it presses others.
     pub fn softness_mut(&mut self) -> &mut [f64] {
         &mut self.softness
     }
 
-    /// Returns the sensitivity of each body, by id, to be changed: the factor on the forces that press it.
+    /// Returns the sensitivity of each body, by id, for changes: the factor on the forces that press it.
     pub fn sensitivity_mut(&mut self) -> &mut [f64] {
         &mut self.sensitivity
     }

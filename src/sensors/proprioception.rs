@@ -22,7 +22,7 @@ pub enum ProprioceptionComponent {
     Torques,
     /// Proximity of each joint to its limits, see [`limit_activation`].
     Limits,
-    /// State of the actuators, as the actuation model defines it.
+    /// State of the actuators, as defined by the actuation model.
     Actuation,
 }
 
@@ -51,7 +51,7 @@ pub struct ProprioceptionEntry {
     pub name: String,
 }
 
-/// The layout of the proprioceptive vector: which components, in which order.
+/// The layout of the proprioceptive vector: its components and their order.
 ///
 /// Under `compat: api` the order is angles, velocities, torques, limits, actuation, and all but the angles can be turned off. Under
 /// `compat: reference` all are on, in the order actuation, limits, angles, velocities, torques.
@@ -59,7 +59,7 @@ pub struct ProprioceptionEntry {
 pub struct Proprioception {
     joints: MimoJoints,
     torque_sensors: Vec<usize>,
-    /// The first value of each.
+    /// The first value of each sensor.
     torque_adr: Vec<usize>,
     layout: Vec<(ProprioceptionComponent, Range<usize>)>,
 }
@@ -125,8 +125,8 @@ impl Proprioception {
         self.layout.iter().find(|l| l.0 == component).map(|l| l.1.clone())
     }
 
-    /// Iterates over the entries of the vector in order: single numbers, and three for each torque sensor. `actuation`
-    /// is the model that the vector was laid out for.
+    /// Iterates over the entries of the vector in order: single numbers, and three for each torque sensor. `actuation` is the model for which the
+    /// vector was laid out.
     pub fn entries(&self, model: &Model, actuation: &dyn Actuation) -> Vec<ProprioceptionEntry> {
         let mut entries = Vec::new();
         for (component, range) in &self.layout {
@@ -180,7 +180,7 @@ impl Proprioception {
         self.torque_sensors.iter().map(|&i| model.sensor_name[i].as_str())
     }
 
-    /// Writes the vector, of length [`Self::len`]. If `out` has another length, it is filled as far as possible.
+    /// Writes the vector, of length [`Self::len`]. If `out` has another length, as much as possible is written.
     pub fn observe(&self, model: &Model, s: &State, actuation: &dyn Actuation, out: &mut [f64]) {
         for (component, range) in &self.layout {
             let Some(out) = out.get_mut(range.clone()) else {
@@ -211,7 +211,7 @@ fn gather(from: &[f64], at: &[usize], out: &mut [f64]) {
     }
 }
 
-/// Returns how strongly a joint limit is felt at angle `q` (rad): 0 inside the range, rising linearly to 1 over the
+/// Returns the strength with which a joint limit is felt at angle `q` (rad): 0 inside the range, rising linearly to 1 over the
 /// last 0.035 rad before either limit, and further beyond it.
 pub fn limit_activation(q: f64, range: [f64; 2]) -> f64 {
     let inside = (q - (range[0] + LIMIT_THRESHOLD)).min((range[1] - LIMIT_THRESHOLD) - q);

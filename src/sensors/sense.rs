@@ -7,7 +7,7 @@ use crate::spaces::{Dtype, Number};
 
 macro_rules! senses {
     ($($(#[$doc:meta])* $sense:ident = $key:literal, $switch:literal;)*) => {
-        /// A sense whose values can be transformed, in the order in which the senses are transformed in each step.
+        /// A sense whose values can be transformed. The order is that in which senses are transformed in each step.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
         pub enum Sense {
             $($(#[$doc])* #[doc = concat!("The key `", $key, "`.")] $sense,)*
@@ -17,7 +17,7 @@ macro_rules! senses {
             /// Every sense, in order.
             pub const ALL: [Self; [$($key),*].len()] = [$(Self::$sense),*];
 
-            /// Returns its key in the observation; that of the image in colours, for an eye.
+            /// Returns its key in the observation; for an eye, that of the colour image.
             pub const fn key(self) -> &'static str {
                 match self {
                     $(Self::$sense => $key,)*
@@ -39,7 +39,7 @@ senses! {
     Proprioception = "observation", "";
     /// The skin.
     Touch = "touch", "touch_active";
-    /// The skin of whole parts.
+    /// The skin, pooled over whole parts.
     TouchPooled = "touch_pooled", "touch_pooled";
     /// Pain.
     Pain = "pain", "pain_active";
@@ -172,7 +172,7 @@ pub struct ObservationEntry {
     pub high: f64,
 }
 
-/// The source of an entry: a sense, and which image, of an eye.
+/// The source of an entry: a sense, or an image of an eye.
 type EntrySource = (Option<Sense>, Option<VisionOutput>);
 
 const GOAL: EntrySource = (None, None);

@@ -11,12 +11,12 @@ use crate::physics::State;
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Vestibular {
     sensors: Vec<usize>,
-    /// The first value of each.
+    /// The first value of each sensor.
     adr: Vec<usize>,
 }
 
 impl Vestibular {
-    /// Finds the vestibular sensors of `model`; those of other bodies than MIMo's are left out.
+    /// Finds the vestibular sensors of `model`; sensors of other bodies are left out.
     pub fn new(model: &Model) -> Self {
         let felt = |i: &usize| matches!(model.sensor_type[*i], SensorType::Accelerometer | SensorType::Gyro);
         let sensors: Vec<usize> = MimoBodies::of(model).sensors().into_iter().filter(felt).collect();
@@ -31,7 +31,7 @@ impl Vestibular {
         3 * self.sensors.len()
     }
 
-    /// Returns whether the model has no such sensor.
+    /// Returns whether the model has no vestibular sensor.
     pub fn is_empty(&self) -> bool {
         self.sensors.is_empty()
     }

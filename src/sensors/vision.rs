@@ -123,13 +123,13 @@ impl Vision {
         &self.renderer
     }
 
-    /// Sets whether a thread of its own draws the right eye: see [`Renderer::set_threads`].
+    /// Sets whether a separate thread draws the right eye: see [`Renderer::set_threads`].
     pub fn set_threads(&mut self, threads: usize) {
         self.renderer.set_threads(threads);
     }
 
-    /// Draws both images, left and right, of [`View::rgb_len`] bytes each. Poses are those of the start of the last physics
-    /// step, as in the reference.
+    /// Draws both images, left and right, of [`View::rgb_len`] bytes each. Poses are those at the start of the last physics step, as in the
+    /// reference.
     ///
     /// # Errors
     /// Fails if a buffer has the wrong length.

@@ -16,7 +16,7 @@ pub(crate) use values::Number;
 pub use values::Values;
 pub use values::{Array, ValuesMut};
 
-/// A box of single-precision vectors with bounds of their own for each component.
+/// A box of single-precision vectors with separate bounds for each component.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BoxSpace {
     low: Vec<f32>,
@@ -24,7 +24,7 @@ pub struct BoxSpace {
 }
 
 impl BoxSpace {
-    /// Creates a space from bounds of equal length; if one is longer, its excess is dropped.
+    /// Creates a space from bounds of equal length; if one is longer, its excess components are dropped.
     pub fn new(mut low: Vec<f32>, mut high: Vec<f32>) -> Self {
         let n = low.len().min(high.len());
         low.truncate(n);

@@ -1,4 +1,4 @@
-//! Movements without a purpose: the noises with which infants' models babble and learners explore.
+//! Movements without a purpose: the noises with which models of infants babble and learners explore.
 
 use std::f64::consts::{PI, TAU};
 use std::fmt::{self, Display, Formatter};
@@ -9,13 +9,13 @@ use thiserror::Error;
 use super::spectrum::ColoredNoise;
 use super::{BoxSpace, NumpyRng};
 
-/// Standard deviation of all noises before they are clipped, in half ranges of an action: that of uniform noise. A noise then
-/// differs from another by how long it lasts, not by how strong it is.
+/// Standard deviation of all noises before they are clipped, in half ranges of an action: that of uniform noise. Noises therefore differ in duration,
+/// not in strength.
 const DEVIATION: f64 = 0.577_350_269_189_625_8;
-/// Number of processes that pink noise is the sum of. The slowest lasts 2^11 steps, about as long as an episode.
+/// Number of processes whose sum is pink noise. The slowest lasts 2^11 steps, about as long as an episode.
 const OCTAVES: usize = 12;
-/// Strength of the coupling of oscillators, in natural frequencies. From about 1.6 times the spread of the frequencies on, oscillators
-/// start to synchronise (Kuramoto, 1984). At this value some do and some do not.
+/// Strength of the coupling of oscillators, in natural frequencies. Above about 1.6 times the spread of the frequencies, oscillators start to
+/// synchronise (Kuramoto, 1984). At this value, some do and some do not.
 const COUPLING: f64 = 0.5;
 /// Spread of the natural frequencies, as a share of their mean.
 const SPREAD: f64 = 0.25;
@@ -26,7 +26,7 @@ const DRIFT: f64 = 0.5;
 const EXPONENTS: std::ops::RangeInclusive<f64> = 0.0..=2.0;
 /// Exponent of infants' movements at birth, and its rise a week (arXiv 2606.16590: wrists and ankles of four infants of 8 to 30 weeks).
 pub(crate) const INFANT_EXPONENT: [f64; 2] = [0.617, 0.00869];
-/// Ages between which it was seen, weeks; it is held before and after.
+/// Ages between which it was observed, weeks; it is constant before and after.
 pub(crate) const INFANT_WEEKS: [f64; 2] = [8.0, 30.0];
 /// Weeks of a month.
 const WEEKS: f64 = 30.4375 / 7.0;
@@ -72,14 +72,14 @@ pub enum Noise {
         months: Option<f64>,
     },
     /// `oscillators`: an oscillator for each number of the action; all are coupled to their mean field (Y. Kuramoto, "Chemical
-    /// Oscillations, Waves, and Turbulence", 1984), each with a frequency, an amplitude and a phase of its own.
+    /// Oscillations, Waves, and Turbulence", 1984), each with its own frequency, amplitude and phase.
     Oscillators {
         /// The mean of the frequencies, Hz; 1 by default.
         hertz: f64,
     },
 }
 
-/// A text that is not a noise, or a noise that lacks something.
+/// A text that is not a noise, or an incomplete noise.
 #[derive(Clone, Debug, Error, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum NoiseError {
@@ -149,7 +149,7 @@ impl Display for Noise {
 }
 
 impl Noise {
-    /// Returns the noise for a MIMo of an age, months: `color_by_age` without a number becomes that of the age. Other noises do not change.
+    /// Returns the noise for MIMo at an age, months: `color_by_age` without a number gets that age. Other noises do not change.
     ///
     /// # Errors
     /// `color_by_age` without a number, and no age.
@@ -220,7 +220,7 @@ struct Oscillator {
     /// Natural frequency, rad/s.
     speed: f64,
     amplitude: f64,
-    /// Phase of the movement against the oscillator's: oscillators that swing together would move all joints alike.
+    /// Phase of the movement relative to the oscillator: otherwise, oscillators that swing together would move all joints in the same way.
     lag: f64,
 }
 
@@ -341,7 +341,7 @@ fn relaxing(decays: Vec<f64>, len: usize, rng: &mut NumpyRng) -> NoiseProcess {
     NoiseProcess::Relaxing { decays, values }
 }
 
-/// Moves oscillators on by a step: the mean field pulls each towards the mean phase, the more the more they agree.
+/// Advances oscillators by a step: the mean field pulls each towards the mean phase, more strongly the more they agree.
 fn swing(all: &mut [Oscillator], natural: f64, step: f64, rng: &mut NumpyRng) {
     let mut field = [0.0; 2];
     for o in &*all {
@@ -361,7 +361,7 @@ fn swing(all: &mut [Oscillator], natural: f64, step: f64, rng: &mut NumpyRng) {
     }
 }
 
-/// Turns numbers in half ranges into an action.
+/// Converts numbers in half ranges to an action.
 fn place(space: &BoxSpace, numbers: impl Iterator<Item = f64>, action: &mut Vec<f32>) {
     action.clear();
     let bounds = space.low.iter().zip(&space.high);

@@ -40,7 +40,7 @@ fn layers() -> &'static ZigguratLayers {
     })
 }
 
-/// Draws a number of the standard normal distribution. `word` gives 64 random bits.
+/// Draws a number from the standard normal distribution. `word` returns 64 random bits.
 pub(super) fn normal(mut word: impl FnMut() -> u64) -> f64 {
     let ZigguratLayers { x, share } = layers();
     loop {
@@ -78,7 +78,7 @@ fn tail(word: &mut impl FnMut() -> u64, negative: bool) -> f64 {
     }
 }
 
-/// Makes a number in [0, 1) of the highest 53 bits.
+/// Converts the highest 53 bits to a number in [0, 1).
 pub(super) fn unit(word: u64) -> f64 {
     (word >> 11) as f64 * (1.0 / 9_007_199_254_740_992.0)
 }

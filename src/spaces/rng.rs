@@ -5,7 +5,7 @@ use rand_pcg::rand_core::Rng;
 
 use super::normal;
 
-/// NumPy's default generator: PCG64, seeded as `numpy.random.default_rng(seed)` does it.
+/// NumPy's default generator: PCG64, seeded like `numpy.random.default_rng(seed)`.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct NumpyRng {
     generator: Pcg64,
@@ -42,7 +42,7 @@ impl NumpyRng {
         self.seed
     }
 
-    /// Returns how many numbers were drawn.
+    /// Returns the number of values drawn.
     pub fn drawn(&self) -> u64 {
         self.drawn
     }
@@ -52,8 +52,8 @@ impl NumpyRng {
         normal::unit(self.word())
     }
 
-    /// Draws a number of the standard normal distribution, by the ziggurat method: the same bits on every target, but not
-    /// NumPy's numbers. It takes one word of the generator nearly always, sometimes more.
+    /// Draws a number from the standard normal distribution, by the ziggurat method: the same bits on every target, but not
+    /// NumPy's numbers. It nearly always takes one word of the generator, sometimes more.
     pub fn normal(&mut self) -> f64 {
         normal::normal(|| self.word())
     }

@@ -21,7 +21,7 @@ pub(crate) struct ColoredNoise {
     /// Step of the next sample.
     step: u64,
     len: usize,
-    /// (BLOCK, len), of the block of the last sample.
+    /// The numbers of the last sample's block, (BLOCK, len).
     values: Vec<f32>,
     /// Amplitudes by frequency, roots of unity of half the circle, and a buffer: later blocks allocate nothing.
     amplitudes: Vec<f64>,
@@ -72,7 +72,7 @@ impl ColoredNoise {
         &self.values[place * self.len..(place + 1) * self.len]
     }
 
-    /// Computes what all blocks share.
+    /// Computes the tables that all blocks share.
     fn prepare(&mut self) {
         self.amplitudes = (0..BLOCK)
             .map(|k| match k.min(BLOCK - k) {

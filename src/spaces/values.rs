@@ -7,7 +7,7 @@ pub(crate) trait Number: Copy + Default + 'static {
     /// Its name at run time.
     const DTYPE: Dtype;
 
-    /// Returns values of this type; `None` for those of another.
+    /// Returns values of this type; `None` for another type.
     fn of(values: Values<'_>) -> Option<&[Self]>;
 
     /// Returns values of this type, for writing; `None` for another type.
@@ -65,7 +65,7 @@ macro_rules! numbers {
         })*
 
         impl<'a> Values<'a> {
-            /// Returns how many there are.
+            /// Returns the number of values.
             pub fn len(self) -> usize {
                 match self {
                     $(Self::$kind(values) => values.len(),)*
@@ -98,14 +98,14 @@ macro_rules! numbers {
         }
 
         impl ValuesMut<'_> {
-            /// Returns how many there are.
+            /// Returns the number of values.
             pub fn len(&self) -> usize {
                 match self {
                     $(Self::$kind(values) => values.len(),)*
                 }
             }
 
-            /// Writes a row, the rows having the length of `values`; without room, or if the type is another, nothing is written.
+            /// Writes a row, the rows having the length of `values`; if there is no room, or the type differs, nothing is written.
             pub fn write_row(self, row: usize, values: Values<'_>) {
                 match (self, values) {
                     $((Self::$kind(out), Values::$kind(values)) => {
@@ -147,7 +147,7 @@ macro_rules! numbers {
                 }
             }
 
-            /// Appends numbers of the same type; those of another are left out.
+            /// Appends numbers of the same type; values of another type are left out.
             pub fn extend(&mut self, more: Values<'_>) {
                 match (self, more) {
                     $((Self::$kind(values), Values::$kind(more)) => values.extend_from_slice(more),)*
@@ -170,7 +170,7 @@ numbers! {
 }
 
 impl Values<'_> {
-    /// Returns whether there are none.
+    /// Returns whether there are no values.
     pub fn is_empty(self) -> bool {
         self.len() == 0
     }
@@ -187,7 +187,7 @@ impl Values<'_> {
 }
 
 impl ValuesMut<'_> {
-    /// Returns whether there are none.
+    /// Returns whether there are no values.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }

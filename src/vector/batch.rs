@@ -21,8 +21,8 @@ pub struct VectorStep<'a> {
     pub infos: Infos<'a>,
     /// The ends of the episodes that ended in this step, with [`AutoresetMode::SameStep`](super::AutoresetMode).
     pub finals: Option<EpisodeEndRows<'a>>,
-    /// The environments that could not continue, usually because the simulation diverged, in ascending order. Their rows hold the
-    /// previous observation, and `truncated`. The mode decides when they are reset.
+    /// The environments that could not continue, usually because the simulation diverged, in ascending order. Their rows hold the previous
+    /// observation, and `truncated` is set. The mode decides when they are reset.
     pub failures: &'a [EnvFailure],
 }
 

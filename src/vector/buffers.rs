@@ -29,14 +29,14 @@ macro_rules! buffers {
             pub terminated: Option<&'a mut [bool]>,
             /// Whether episodes were truncated (N).
             pub truncated: Option<&'a mut [bool]>,
-            /// For each row of `touch` (N) the sensors that are nonzero there. Keep both from call to call, and only active sensors are
-            /// written, instead of thousands of zeros. Start with zeros and empty lists.
+            /// For each row of `touch` (N), the sensors that are nonzero there. If you keep both from call to call, only active sensors are written
+            /// instead of thousands of zeros. Start with zeros and empty lists.
             pub touched: Option<&'a mut [Vec<u32>]>,
         }
 
         impl<'a> Buffers<'a> {
             /// Makes buffers from the memory that `values` returns for each entry of the observation, in the order of
-            /// [`ObservationEntry::ALL`]. Memory of another type than the entry's is left out.
+            /// [`ObservationEntry::ALL`]. Memory whose type differs from the entry's is left out.
             pub fn from_fn(mut values: impl FnMut(&'static ObservationEntry) -> Option<ValuesMut<'a>>) -> Self {
                 let mut entries = ObservationEntry::ALL.iter();
                 let mut next = || entries.next().and_then(&mut values);
@@ -83,7 +83,7 @@ impl Buffers<'_> {
         Ok(())
     }
 
-    /// Writes the observation of an environment. Of thousands of touch sensors it copies only the active ones, if that suffices. The
+    /// Writes the observation of an environment. Copies only the active touch sensors where that suffices. The
     /// lengths were checked before.
     pub(super) fn write(&mut self, row: usize, env: &Env) {
         let observation = env.observation();
@@ -109,7 +109,7 @@ impl Buffers<'_> {
         self.write_entries(row, &observation, |entry| entry.sense != Some(Sense::Touch));
     }
 
-    /// Writes a row from an observation that no environment holds any more. Do not mix it with [`Buffers::write`].
+    /// Writes a row from an observation that environments no longer hold. Do not mix it with [`Buffers::write`].
     pub(super) fn write_whole(&mut self, row: usize, observation: &Observation<'_>) {
         self.write_entries(row, observation, |_| true);
     }

@@ -40,7 +40,7 @@ pub enum VectorError {
         /// The space of the environment.
         found: String,
     },
-    /// An environment of another age cannot share arrays with the others.
+    /// An environment at another age cannot share arrays with the others.
     #[error(
         "environment {env} cannot change its age: {what} would be {found} instead of {expected}; set touch_grows to True"
     )]
@@ -64,7 +64,7 @@ pub enum VectorError {
         /// Number of values found.
         found: usize,
     },
-    /// An array is for a sense that the environments do not have.
+    /// An array belongs to a sense that the environments do not have.
     #[error("{what}: the environments have no such observation")]
     NoSense {
         /// Name of the array.
@@ -121,7 +121,7 @@ pub enum VectorError {
     Thread(#[from] std::io::Error),
 }
 
-/// Describes how many environments fit.
+/// Describes the number of environments that fit.
 fn advice(fit: usize) -> String {
     match fit {
         0 => "not even one fits".to_string(),

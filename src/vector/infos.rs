@@ -10,7 +10,7 @@ use crate::env::{BehaviorInfo, Info, Outcome};
 pub struct Infos<'a> {
     /// Number of steps of each episode (N): see [`Info::steps`].
     pub steps: &'a [u64],
-    /// Which geoms the right and the left palm have touched, (N, 2, geoms), 1 or 0, for the behavior `self_touch`.
+    /// The geoms that the right and the left palm have touched, (N, 2, geoms), 1 or 0, for the behavior `self_touch`.
     pub touches: Option<&'a [u8]>,
     /// Steps with a hand in view, (N, 4), in the order of [`EYE_HAND_PAIRS`](crate::env::EYE_HAND_PAIRS), for the behavior `hand_regard`.
     pub regards: Option<&'a [u64]>,
@@ -24,7 +24,7 @@ pub struct Infos<'a> {
     pub age: Option<&'a [f64]>,
     /// The reflexes that any environment has.
     pub reflex_names: &'a [Reflex],
-    /// How often each of them acted, (N, names), 0 to 1: see [`ReflexShares`](crate::env::ReflexShares). `None` without reflexes.
+    /// The share of steps in which each of them acted, (N, names), 0 to 1: see [`ReflexShares`](crate::env::ReflexShares). `None` without reflexes.
     pub reflexes: Option<&'a [f64]>,
     /// Success and failure (N) of tasks that report them.
     pub outcomes: Option<&'a [Outcome]>,

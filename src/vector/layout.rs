@@ -17,11 +17,11 @@ pub(super) struct RowLayout {
     pub geoms: Option<usize>,
     /// Whether any environment's behavior is `hand_regard`.
     pub regards: bool,
-    /// Whether the eyes have a rate of their own.
+    /// Whether the eyes have their own rate.
     pub ages: bool,
-    /// Whether any MIMo grows by a schedule.
+    /// Whether any MIMo has a schedule of ages.
     pub grows: bool,
-    /// Which reflexes any environment has.
+    /// The reflexes that any environment has.
     pub reflexes: [bool; Reflex::ALL.len()],
     /// Number of terms of the rewards, if the tasks report outcomes.
     pub terms: Option<usize>,

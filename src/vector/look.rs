@@ -6,7 +6,7 @@ use super::{Buffers, VectorEnv, VectorError, VectorStep, of};
 use crate::env::draw_eyes;
 
 impl VectorEnv {
-    /// Draws the pictures of the last batch that are still to be drawn ([`Config::vision_lazy`](crate::Config::vision_lazy)), on all
+    /// Draws the pictures of the last batch that have not been drawn yet ([`Config::vision_lazy`](crate::Config::vision_lazy)), on all
     /// threads, and returns the batch with them. Otherwise the batch does not change. An episode that ended in
     /// [`AutoresetMode::SameStep`](super::AutoresetMode) has already drawn its last picture.
     ///

@@ -5,7 +5,7 @@ use super::{AutoresetMode, VectorError, VectorOptions, options};
 use crate::config::VisionOutput;
 use crate::env::Env;
 
-/// The limit on systems that do not report their memory.
+/// The limit for systems that do not report their memory.
 const DEFAULT_LIMIT: u64 = if cfg!(target_pointer_width = "32") {
     2 << 30
 } else {
@@ -17,12 +17,12 @@ const DEFAULT_LIMIT: u64 = if cfg!(target_pointer_width = "32") {
 pub(super) struct MemoryEstimate {
     /// Of a further environment.
     pub each: u64,
-    /// Of what threads draw with, however many environments there are.
+    /// Memory with which threads draw, regardless of the number of environments.
     pub drawing: u64,
 }
 
 impl MemoryEstimate {
-    /// Estimates from an environment that is built.
+    /// Estimates from an existing environment.
     ///
     /// Sizes are linear in the number of each kind of element. The factors were measured; a test compares the sum with the
     /// allocator.
@@ -53,8 +53,8 @@ impl MemoryEstimate {
     }
 }
 
-/// Returns the memory with which a thread draws what an eye sees: the visibility buffers of the larger image, of 32 bytes a pixel,
-/// for colours and for depth and segmentation.
+/// Returns the memory with which a thread draws what an eye sees: the visibility buffers of the larger image, 32 bytes per pixel, for colours and for
+/// depth and segmentation.
 fn drawing(env: &Env) -> usize {
     let Some(vision) = env.senses().vision() else { return 0 };
     let pixels = vision.views().map(|view| view.width * view.height);

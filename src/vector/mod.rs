@@ -124,7 +124,7 @@ impl VectorEnv {
         Self::build(n, |_| blueprint, options)
     }
 
-    /// Makes one environment of each blueprint. Scenes, behaviors and seeds may differ, the spaces may not.
+    /// Makes one environment of each blueprint. Scenes, behaviors and seeds may differ, but the spaces may not.
     ///
     /// # Errors
     /// As [`VectorEnv::new`]; spaces that differ.
@@ -132,7 +132,7 @@ impl VectorEnv {
         Self::build(blueprints.len(), |env| &blueprints[env], options)
     }
 
-    /// Refuses a number of environments that would not fit into memory, without making them. Call it before making lists of that length;
+    /// Refuses a number of environments that would not fit into memory, without creating them. Call it before creating lists of that length;
     /// [`VectorEnv::new`] and [`VectorEnv::from_blueprints`] do it themselves.
     ///
     /// # Errors
@@ -209,7 +209,7 @@ impl VectorEnv {
         self.threads
     }
 
-    /// Returns the reason why there are fewer threads than requested, if so.
+    /// Returns the reason why there are fewer threads than requested, if there are.
     pub fn clipped_threads(&self) -> Option<ClippedThreads> {
         self.clipped
     }

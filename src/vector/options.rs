@@ -7,13 +7,13 @@ use crate::threads::PARALLEL;
 /// When an environment starts the next episode, as in Gymnasium's `AutoresetMode`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum AutoresetMode {
-    /// The step after the last one resets. It ignores its action and returns the first observation of the next episode.
+    /// The step after the last one resets the environment. It ignores its action and returns the first observation of the next episode.
     #[default]
     NextStep,
-    /// The last step resets. It returns the first observation of the next episode, and keeps the last one of the old
+    /// The last step resets the environment. It returns the first observation of the next episode and keeps the last one of the old episode
     /// ([`VectorStep::finals`](super::VectorStep::finals)).
     SameStep,
-    /// The caller resets ([`VectorEnv::reset_where`](super::VectorEnv::reset_where)).
+    /// The caller resets the environment ([`VectorEnv::reset_where`](super::VectorEnv::reset_where)).
     Disabled,
 }
 
@@ -25,8 +25,8 @@ pub struct VectorOptions {
     /// Number of threads that step environments; 0 means one for each core. Without the feature `parallel`, and on
     /// wasm32, it is one. Results do not depend on it.
     pub threads: usize,
-    /// Memory that the environments may take, bytes. By default the memory that the system reports as available (Linux), and otherwise 64
-    /// GiB (2 GiB with 32-bit addresses).
+    /// Memory that the environments may take, bytes. The default is the memory that the system reports as available (Linux), and otherwise 64 GiB (2
+    /// GiB with 32-bit addresses).
     pub max_memory: Option<u64>,
     /// Number of copies of all observations that the caller keeps in addition to those of the vector; they count as memory that the
     /// environments take.

@@ -16,7 +16,7 @@ impl VectorEnv {
         Ok(&self.slot(env)?.env)
     }
 
-    /// Returns an environment, to change its state. Results of direct calls are not in the rows of the vector before the next step.
+    /// Returns an environment, to change its state. The rows of the vector show the results of direct calls only after the next step.
     ///
     /// # Errors
     /// [`VectorError::Unknown`], [`VectorError::InFlight`].

@@ -16,7 +16,7 @@ pub(super) enum Command {
     Step,
     /// Start an episode, with or without a seed.
     Reset(Option<u64>),
-    /// Draw the eyes, if their picture is still to be drawn.
+    /// Draw the eyes, if their picture has not been drawn yet.
     Look,
 }
 
@@ -29,7 +29,7 @@ pub(super) struct Slot {
     pub mode: AutoresetMode,
     /// The number of the last call of `send` that named the environment.
     pub named: u64,
-    /// Whether there was a reset.
+    /// Whether the environment has been reset.
     pub started: bool,
     pub reward: f64,
     pub terminated: bool,
@@ -73,7 +73,7 @@ impl Slot {
         }
     }
 
-    /// Returns whether the episode is over, so that a step is a reset or an error.
+    /// Returns whether the episode is over, in which case a step is a reset or an error.
     pub fn over(&self) -> bool {
         !self.env.ready() || self.env.over()
     }
@@ -104,7 +104,7 @@ impl Slot {
         }
     }
 
-    /// Steps the environment in the memory of the thread, which the environment before it has left in the caches.
+    /// Steps the environment in the thread's memory, which is still in the caches from the previous environment.
     fn step(&mut self) {
         let mut env = self.env.work(ScratchUse::Step);
         match env.step(&self.action) {
@@ -127,7 +127,7 @@ impl Slot {
         }
     }
 
-    /// Resets the environment in the memory of the thread.
+    /// Resets the environment in the thread's memory.
     fn reset(&mut self, seed: Option<u64>) {
         self.started = true;
         // before the environment works in the memory of the thread, which is that of a body
@@ -158,7 +158,7 @@ impl Slot {
     }
 }
 
-/// Draws what the environment saw last, if that waits: the other environments are still under way.
+/// Draws the environment's last view, if that has not been done yet, while other environments are still running.
 fn draw_last(env: &mut Env) -> Result<(), EnvError> {
     let senses = env.senses();
     let waits = senses.vision_is_deferred() || senses.vision_is_lazy();

@@ -1,4 +1,4 @@
-//! The demands of tests on a graphics adapter: measurements of its kind.
+//! The tolerances of tests for a graphics adapter, as measured for its kind.
 //!
 //! Each driver filters textures and places samples in its own way, so that bounds of pictures hold for the adapters on which they were
 //! measured. On others such tests are ignored, with the reason.

@@ -39,9 +39,9 @@ use libtest_mimic::{Arguments, Completion, Conclusion, Failed};
 pub struct Need {
     /// One or two words, which precede the names of the tests in lists.
     pub name: &'static str,
-    /// An environment variable that makes the lack a failure when it is `required`.
+    /// An environment variable with which a missing need is a failure, if its value is `required`.
     pub required_by: Option<&'static str>,
-    /// Finds it, setting it up where that is possible; otherwise says why it is missing.
+    /// Finds it, setting it up if possible; otherwise returns why it is missing.
     pub check: fn() -> Result<(), String>,
 }
 
@@ -55,7 +55,7 @@ impl Need {
         }
     }
 
-    /// Returns the result of the check, which is made once in a process.
+    /// Returns the result of the check, which is made once per process.
     fn checked(&self) -> Result<(), String> {
         type Checked = Arc<OnceLock<Result<(), String>>>;
         static CHECKS: Mutex<BTreeMap<&'static str, Checked>> = Mutex::new(BTreeMap::new());
@@ -115,11 +115,11 @@ macro_rules! show {
 }
 
 thread_local! {
-    /// The output of this thread's test, while it is kept back.
+    /// The output of this thread's test, while it is held back.
     static SAID: RefCell<Option<String>> = const { RefCell::new(None) };
 }
 
-/// Keeps a line for the case that the test fails, or prints it where nothing is kept back.
+/// Keeps a line in case the test fails, or prints it if output is not held back.
 pub fn show(line: std::fmt::Arguments) {
     let kept = SAID.with_borrow_mut(|said| {
         let text = said.as_mut()?;
@@ -153,7 +153,7 @@ fn missing(trial: &Trial) -> Option<(String, bool)> {
     })
 }
 
-/// Runs the tests as the arguments of the process ask, and prints at the end what was ignored and why.
+/// Runs the tests selected by the arguments of the process, and finally prints what was ignored and why.
 pub fn run(trials: Vec<Trial>) -> ExitCode {
     let conclusion = run_with(std::env::args_os(), trials);
     end_at_once(&conclusion);

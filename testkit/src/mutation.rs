@@ -1,4 +1,4 @@
-//! Damage to text and bytes, seeded, so that a failure can be repeated.
+//! Seeded damage to text and bytes, so that failures can be repeated.
 
 mod document;
 
@@ -54,7 +54,7 @@ pub fn mutate(bytes: &[u8], words: &[&[u8]], rng: &mut Rng) -> Vec<u8> {
     out
 }
 
-/// Returns a mutation of a text, in which what is not UTF-8 becomes U+FFFD.
+/// Returns a mutation of a text, in which invalid UTF-8 becomes U+FFFD.
 pub fn mutate_text(text: &str, rng: &mut Rng) -> String {
     String::from_utf8_lossy(&mutate(text.as_bytes(), WORDS, rng)).into_owned()
 }

@@ -1,4 +1,4 @@
-//! Yardsticks of tests that are not in the repository: found, or set up by the scripts of `conformance/scripts`.
+//! References for tests that are not in the repository: they are found, or set up by the scripts in `conformance/scripts`.
 
 use std::fs::File;
 use std::path::{Path, PathBuf};
@@ -7,13 +7,13 @@ use std::time::{Duration, SystemTime};
 
 use crate::harness::Need;
 
-/// The variable that makes it a failure when something cannot be set up: `MUJOCO_CONFORMANCE=required`.
+/// The variable with which a reference that cannot be set up is a failure: `MUJOCO_CONFORMANCE=required`.
 pub const REQUIRED: &str = "MUJOCO_CONFORMANCE";
 
 /// A Python with NumPy.
 pub const PYTHON: Need = Need::new("Python", Some(REQUIRED), || python().map(drop));
 
-/// A Python with MuJoCo, which has no wheel for every Python.
+/// A Python with MuJoCo, whose wheels do not cover every Python version.
 pub const PYTHON_MUJOCO: Need = Need::new("MuJoCo in Python", None, || {
     let python = python()?;
     has_module(&python, "mujoco")
@@ -22,7 +22,7 @@ pub const PYTHON_MUJOCO: Need = Need::new("MuJoCo in Python", None, || {
 /// A checkout of the BabyBench starter kit.
 pub const KIT: Need = Need::new("kit", None, || kit().map(drop));
 
-/// Time after a failure in which other processes do not retry.
+/// Time after a failure during which other processes do not retry.
 const PATIENCE: Duration = Duration::from_secs(600);
 
 /// Returns the folder of the workspace.
@@ -145,7 +145,7 @@ pub fn set_up(script: &str, arguments: &[&str], result: &Path) -> Result<(), Str
     outcome
 }
 
-/// Returns the reason of a failure that is not long ago.
+/// Returns the reason of a recent failure.
 fn recent(failed: &Path) -> Option<String> {
     let written = failed.metadata().and_then(|about| about.modified()).ok()?;
     let age = SystemTime::now().duration_since(written).unwrap_or_default();

@@ -142,7 +142,7 @@ export class Env {
   }
 
   /**
-   * Computes the rewards of rows of goals; for the goals of a step it is the reward of the step.
+   * Computes the rewards for rows of goals. For the goals of a step, the result is the reward of that step.
    * @param {ArrayLike<number>[]} achieved
    * @param {ArrayLike<number>[]} desired
    * @param {{ reward_terms: number[] | null }[]} infos those of the steps
@@ -258,7 +258,7 @@ export class Env {
   }
 
   /**
-   * Describes what is observed: each entry's property of {@link Env.observation}, Gymnasium's key, shape, number type and bounds.
+   * Describes the observation: each entry's property of {@link Env.observation}, Gymnasium's key, shape, number type and bounds.
    * @returns {import("./types.js").ObservationSpace[]}
    */
   get observationSpace() {
@@ -348,7 +348,7 @@ export class Env {
   }
 
   /**
-   * Adds a force (N) and a torque (N m) at a point (m), in the world, to what acts on a body. They act in every step until
+   * Adds a force (N) and a torque (N m) at a point (m), in the world, to those on a body. They act in every step until
    * {@link Env.releaseForces} or the next reset.
    * @param {number} body
    * @param {ArrayLike<number>} force
@@ -384,7 +384,7 @@ export class Env {
   }
 
   /**
-   * Sets whether resets and steps leave the eyes' pictures to {@link Env.drawEyes}.
+   * Sets whether resets and steps skip the eyes' pictures, which {@link Env.drawEyes} then draws.
    * @param {boolean} deferred
    */
   deferVision(deferred) {

@@ -13,7 +13,7 @@ export class ModuleError extends Error {
   }
 }
 
-/** An argument is of another type than it must be, or out of its range. */
+/** An argument has the wrong type or is out of range. */
 export class ArgumentError extends TypeError {
   /**
    * @param {string} argument its name, with the place of a value in it, as `qpos[3]`

@@ -22,7 +22,7 @@ const init = once(async (source) => {
 export default init;
 
 /**
- * A policy that is an ONNX model. Its inputs are named after entries of the observation (`observation`, `touch`, `vestibular`, `eye_left`,
+ * A policy from an ONNX model. Its inputs are named after entries of the observation (`observation`, `touch`, `vestibular`, `eye_left`,
  * `eye_left_depth`, ...: the keys of {@link Env.observationSpace}), or a single input takes all of them. Its output is the action.
  *
  * ```js
@@ -39,7 +39,7 @@ export class OnnxPolicy {
   #names;
 
   /**
-   * Reads a model for an environment, and for those that sense and act alike.
+   * Reads a model for an environment and for others with the same observations and actions.
    * @param {Uint8Array} bytes
    * @param {import("./env.js").Env} env
    * @param {string} [name] of the file, for errors

@@ -162,7 +162,7 @@
  */
 
 /**
- * The changes by a lock, by names of joints.
+ * The joints that a lock changed, by name.
  * @typedef {object} LockReport
  * @property {string[]} changed
  * @property {string[]} held by another constraint of the scene

@@ -14,7 +14,7 @@ const STUBS = {
 };
 const UNUSED_SHADERS = ["meshtoon", "meshmatcap", "meshphysical", "meshnormal", "sprite", "points", "linedashed", "equirect", "cube", "backgroundCube", "vsm"];
 
-/** Parts of shaders for features that no material of the page has: bones, bump and reflection maps, clipping planes. */
+/** Parts of shaders for features that no material of the page uses: bones, bump and reflection maps, clipping planes. */
 const UNUSED_PARTS = /ShaderChunk[\\/](aomap|lightmap|envmap|bumpmap|displacementmap|emissivemap|metalnessmap|roughnessmap|gradientmap|normalmap|morph|skin|batching|clearcoat|iridescence|clipping_planes|alphahash|logdepthbuf|map_particle|dithering)\w*\.glsl\.js$/;
 const UNUSED_CHUNKS = ["lights_physical_pars_fragment", "lights_physical_fragment", "transmission_pars_fragment", "transmission_fragment", "iridescence_fragment", "cube_uv_reflection_fragment", "lights_toon_pars_fragment", "lights_toon_fragment"];
 

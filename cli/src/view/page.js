@@ -4,10 +4,10 @@ const $ = (id) => document.getElementById(id);
 const canvas = $("picture");
 const pen = canvas.getContext("2d");
 const SPEEDS = [...$("speed").options].map((option) => option.value);
-/** Milliseconds of an answer above which pictures get coarser, and below which they get finer. */
+/** Response times, ms, above which pictures get coarser and below which they get finer. */
 const SLOW = 55;
 const QUICK = 25;
-/** Colours of touch from weak to strong, and the force of the last, N. */
+/** Colours of touch from weak to strong, and the force of the last colour, N. */
 const HEAT = ["#8c175c", "#db294d", "#fa6b29", "#ffbf33", "#fff5b8"];
 const STRONG = 10;
 
@@ -153,7 +153,7 @@ addEventListener("keydown", (event) => {
 
 // --- the pointer ---
 
-/** Pointers that are down, by id, and where they were last. */
+/** The last positions of the pointers that are down, by id. */
 const down = new Map();
 let pulls = false;
 

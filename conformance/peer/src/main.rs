@@ -26,7 +26,7 @@ use serde::{Deserialize, Serialize};
 const STATES: usize = 8;
 const BETWEEN: usize = 12;
 
-/// Steps that a document has to make to count as loaded.
+/// Steps that a document must survive to count as loaded.
 const STEPS: usize = 100;
 
 /// Error of accelerations up to which an engine agrees.
@@ -35,7 +35,7 @@ const AGREES: f64 = 1e-6;
 /// A document compared with MuJoCo.
 #[derive(Deserialize, Serialize)]
 struct Compared {
-    /// Whether MuJoCo takes it.
+    /// Whether MuJoCo accepts it.
     counts: bool,
     peer: Engines,
     ours: Engines,
@@ -44,7 +44,7 @@ struct Compared {
 /// The result of running an engine on a document.
 #[derive(Clone, Copy, Default, Deserialize, Serialize)]
 struct Engines {
-    /// It loads, and makes its steps without an error or a number that is not finite.
+    /// It loads and takes its steps without an error and with finite numbers.
     loads: bool,
     /// Its accelerations are MuJoCo's.
     agrees: bool,
@@ -174,7 +174,7 @@ fn compared(api: &'static Mujoco, Document { folder, path }: &Document) -> Compa
     out
 }
 
-/// Lists states on the way of MuJoCo under random controls.
+/// Lists states that MuJoCo visits under random controls.
 fn states(sides: &mut Sides) -> Vec<State> {
     let model = sides.model.clone();
     let mut rng = Rng::with_seed(0);
@@ -210,7 +210,7 @@ fn forward(sides: &mut Sides, state: &State) -> Option<Vec<f64>> {
     qacc.iter().all(|v| v.is_finite()).then_some(qacc)
 }
 
-/// Runs what may panic; `None` where it does.
+/// Runs a function that may panic; `None` if it does.
 fn quietly<T>(work: impl FnOnce() -> T) -> Option<T> {
     let hook = std::panic::take_hook();
     std::panic::set_hook(Box::new(|_| {}));
@@ -232,7 +232,7 @@ impl Peer {
         Some(Self { model, data })
     }
 
-    /// Returns whether it makes its steps.
+    /// Returns whether it can take its steps.
     fn steps(&self) -> bool {
         let mut data = self.model.make_data();
         (0..STEPS).all(|_| data.step(&self.model).is_ok()) && data.qpos.iter().all(|v| v.is_finite())

@@ -1,4 +1,4 @@
-//! Bodies, joints, geoms, sites and cameras, and what of all elements no recording has.
+//! Bodies, joints, geoms, sites and cameras, and the arrays of all elements that no recording has.
 
 use babybench::Model;
 use babybench::model::{Keyframe, ObjType};

@@ -39,8 +39,8 @@ pub fn of_meshes(m: &Model) -> Named {
     all
 }
 
-/// Returns how much a normal magnifies errors of corners: the extent of a mesh by the height of the triangle that a polygon's normal is of, for
-/// the narrowest of those that have a height; at most 1e4.
+/// Returns how much a normal magnifies errors of corners: the extent of a mesh over the height of the triangle that defines a polygon's normal, for
+/// the narrowest such triangle with a height; at most 1e4.
 pub fn needle(m: &Model) -> f64 {
     let of_mesh = |mesh: &Mesh| {
         let polygons = &mesh.polygons;
@@ -108,8 +108,8 @@ fn graph_addresses(m: &Model) -> Vec<f64> {
     hulls(m).map(address).collect()
 }
 
-/// Returns a hull as `mesh_graph` has it: the numbers of corners and triangles, where the neighbours of each corner begin, the vertices
-/// that corners are, the neighbours of each corner with -1 after the last, and the vertices at the corners of each triangle.
+/// Returns a hull in the layout of `mesh_graph`: the numbers of corners and triangles, where the neighbours of each corner begin, the vertex of each
+/// corner, the neighbours of each corner with -1 after the last, and the vertices at the corners of each triangle.
 fn graph(hull: &MeshHull) -> Vec<f64> {
     let corners = hull.vert.len();
     let mut graph = vec![corners as f64, hull.face.len() as f64];

@@ -62,7 +62,7 @@ pub(super) fn of_tendons(m: &Model) -> Named {
     ]
 }
 
-/// Returns MuJoCo's type, object and parameter of what a tendon runs along.
+/// Returns MuJoCo's type, object and parameter of the elements that a tendon runs along.
 pub(super) fn wrap(wrap: &Wrap) -> [f64; 3] {
     let side = |side: Option<usize>| side.map_or(-1.0, |site| site as f64);
     match *wrap {

@@ -19,7 +19,7 @@ use crate::mujoco::{Contact, Mujoco, Simulation};
 /// Scaled condition of the inertia above which MuJoCo's own accelerations are noise.
 const CONDITION: f64 = 1e8;
 
-/// Regularisation of a constraint row below which they are noise, too.
+/// Regularisation of a constraint row below which they are also noise.
 const REGULARISATION: f64 = 1e-13;
 
 /// A row of the Jacobian with no larger entry than this is rounding error: its constraint moves nothing. MuJoCo leaves out only rows of
@@ -40,7 +40,7 @@ const BITS: [i32; 2] = [1, 512];
 pub enum Taken {
     /// Neither side loads it, and why ours does not.
     Refused(String),
-    /// Ours refuses what MuJoCo loads, for a reason that is meant.
+    /// Ours refuses what MuJoCo loads, deliberately.
     Stricter(&'static str),
     /// Only one side loads it.
     ByOne(Measured),
@@ -50,9 +50,9 @@ pub enum Taken {
 
 /// Result of a step from one state on both sides.
 pub enum Stepped {
-    /// MuJoCo gives up or warns, for example about numbers that are not finite, or will in the next step.
+    /// MuJoCo gives up or warns, for example about numbers that are not finite, or would in the next step.
     Diverged,
-    /// MuJoCo's own numbers are noise there: an inertia that is nearly singular, hardly any regularisation.
+    /// MuJoCo's own numbers are noise there: an inertia that is nearly singular, or almost no regularisation.
     Noise,
     /// The quantities of both sides.
     Compared {
@@ -70,7 +70,7 @@ pub enum Stepped {
 /// The cause of a difference.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub enum Why {
-    /// No behavior of MuJoCo itself.
+    /// Not a behavior of MuJoCo itself.
     Ours,
     /// MuJoCo itself jumps as far when the last bits of positions and velocities change.
     Jump,
@@ -144,7 +144,7 @@ impl Sides {
         self.engine.new_state()
     }
 
-    /// Compares the compiled arrays. Those that need the inverse of the inertia may differ as far as that is ill-conditioned.
+    /// Compares the compiled arrays. Those that need the inverse of the inertia may differ as much as its condition explains.
     pub fn arrays(&self) -> Vec<Measured> {
         let all = distances(&self.model, &self.simulation).into_iter();
         let measured = all.filter_map(|distance| {
@@ -222,7 +222,7 @@ impl Sides {
         }
     }
 
-    /// Returns a state of ours that continues as another.
+    /// Returns a copy of a state, for our engine.
     fn copy(&self, of: &State) -> State {
         let mut state = self.engine.new_state();
         state.copy_dynamic_from(of);
@@ -242,7 +242,7 @@ impl Sides {
         self.step_mujoco(start).then_some(computed)
     }
 
-    /// Returns whether rows of either side have hardly any regularisation, or a Jacobian of rounding errors.
+    /// Returns whether rows on either side have almost no regularisation, or a Jacobian of rounding errors.
     fn has_noisy_rows(&self, state: &State) -> bool {
         let rounding = |rate: f64| rate > 0.0 && rate < RATE;
         let ours = (0..state.efc_rows().count()).filter_map(|row| self.engine.efc_j(state, row));
@@ -272,8 +272,8 @@ impl Sides {
             && wrong.iter().all(follows)
     }
 
-    /// Steps MuJoCo from a state of ours. Returns whether it neither gave up nor warned, nor will at the start of the next step, where it
-    /// checks positions and velocities.
+    /// Steps MuJoCo from a state of ours. Returns whether it neither gave up nor warned, and would not at the start of the next step, where it checks
+    /// positions and velocities.
     pub fn step_mujoco(&mut self, start: &State) -> bool {
         self.simulation.reset();
         self.simulation.set_state(&self.model, start);

@@ -29,7 +29,7 @@ impl Dice {
         self.rng.f64() < probability
     }
 
-    /// Returns one of some things.
+    /// Returns one of several items.
     pub fn pick<T: Copy>(&mut self, things: &[T]) -> T {
         things[self.rng.usize(..things.len())]
     }
@@ -39,7 +39,7 @@ impl Dice {
         low + (high - low) * self.rng.f64()
     }
 
-    /// Returns a positive number, each order of magnitude as likely.
+    /// Returns a positive number, with all orders of magnitude equally likely.
     pub fn magnitude(&mut self, low: f64, high: f64) -> f64 {
         self.uniform(low.ln(), high.ln()).exp()
     }
@@ -125,7 +125,7 @@ impl Dice {
         }
     }
 
-    /// Writes the beginning of a `solimp`, or all of it.
+    /// Writes the first numbers of a `solimp`, or all of them.
     pub fn solimp(&mut self) -> String {
         let power = self.pick(&[1.0, 2.0, 3.0, 1.7, 4.3]);
         let mut all = [
@@ -142,7 +142,7 @@ impl Dice {
         numbers(&all[..n])
     }
 
-    /// Writes friction coefficients: `sliding` of them, one torsional, as many rolling; the beginning, or all.
+    /// Writes friction coefficients: `sliding` ones, a torsional one, and as many rolling ones; the first few, or all.
     pub fn friction(&mut self, sliding: usize) -> String {
         let mut all: Vec<f64> = (0..sliding).map(|_| self.uniform(0.0, 1.5)).collect();
         all.push(self.magnitude(1e-4, 0.1));

@@ -8,10 +8,10 @@ use super::dice::{Dice, numbers};
 use super::language::Language;
 use super::node::Node;
 
-/// Most bodies of a document.
+/// Maximum number of bodies in a document.
 const BODIES: usize = 10;
 
-/// Deepest body below the world.
+/// Maximum depth of a body below the world.
 const DEPTH: usize = 5;
 
 /// A joint that other elements may name.

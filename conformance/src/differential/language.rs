@@ -13,7 +13,7 @@ pub struct Attribute {
     pub name: &'static str,
     /// The way of drawing its values.
     pub how: How,
-    /// The words of an attribute that has words.
+    /// The attribute's words, if it has words.
     pub words: Vec<String>,
     /// Whether its numbers may be infinite.
     pub infinite: bool,
@@ -21,7 +21,7 @@ pub struct Attribute {
     pub in_default: bool,
 }
 
-/// The elements that change physics with their attributes.
+/// The elements that change physics, with their attributes.
 pub struct Language {
     elements: Vec<(String, Vec<Attribute>)>,
 }
@@ -37,7 +37,7 @@ fn words(info: &AttributeInfo) -> Vec<String> {
     }
 }
 
-/// Lists the lines of the rules that the loader's list has nothing for.
+/// Lists the lines of the rules that have no counterpart in the loader's list.
 pub fn stale() -> Vec<String> {
     let listed = elements();
     let mut stale = Vec::new();

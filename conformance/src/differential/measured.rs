@@ -25,7 +25,7 @@ pub struct Measured {
     pub error: f64,
     /// The error up to which both agree.
     pub limit: f64,
-    /// Values of both sides, for people to read.
+    /// Values of both sides, for display.
     pub place: String,
 }
 
@@ -42,7 +42,7 @@ impl Measured {
         }
     }
 
-    /// Records that both sides take a document.
+    /// Records that both sides accept a document.
     pub fn taken() -> Self {
         Self::new("taken", 0.0, 0.0, "")
     }
@@ -52,7 +52,7 @@ impl Measured {
         self.error <= self.limit
     }
 
-    /// Returns another measure instead of this one, if both sides agree only by that one.
+    /// Returns another measure instead of this one, if both sides agree only by the other.
     fn or(self, other: Option<Self>) -> Self {
         match other {
             Some(other) if !self.agrees() && other.agrees() => other,
@@ -91,7 +91,7 @@ impl Measured {
     }
 }
 
-/// Measures all quantities of a step. Those that follow from others which differ are left out. Where both solvers stop early, they
+/// Measures all quantities of a step. Those that follow from differing ones are left out. Where both solvers stop early, they
 /// need agree no better than the `tolerance` that the document asks for, and no better than the cost at which they stop ([`Slack`]);
 /// the velocities that follow are held to the same cost, the positions to what the velocities move them, and sensors are left out
 /// where accelerations agree by that rule alone.

@@ -38,12 +38,12 @@ use table::Tally;
 /// States of each document.
 const STATES: u64 = 3;
 
-/// Returns the seed for a version, so that each release is tested on documents of its own.
+/// Returns the seed for a version, so that each release is tested on different documents.
 pub fn seed_of(version: &str) -> u64 {
     hash(0, version)
 }
 
-/// The count of documents at which MuJoCo crashed.
+/// The number of documents on which MuJoCo crashed.
 const FELL: &str = "documents at which MuJoCo falls (invalid access to memory)";
 
 /// Compares documents `0..count` of a seed, in threads.

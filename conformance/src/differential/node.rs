@@ -1,4 +1,4 @@
-//! A small tree of XML elements: what generated documents are made of, and what the reducer takes apart.
+//! A small tree of XML elements, in which documents are generated and reduced.
 
 use std::fmt;
 
@@ -78,7 +78,7 @@ impl Node {
         self.children.iter_mut().find_map(|child| child.find_nth(k))
     }
 
-    /// Removes element `k` in the order of the text, with all in it; this one, 0, stays.
+    /// Removes element `k` in the order of the text, with its contents; this one, 0, stays.
     pub fn remove_nth(&mut self, k: usize) {
         let mut k = k;
         self.remove_below(&mut k);

@@ -22,7 +22,7 @@ pub struct Finding {
     pub place: String,
 }
 
-/// Looks for a quantity that differs; returns by how much, and the values. A document must still be taken by both sides.
+/// Looks for a quantity that differs; returns by how much, and the values. Both sides must still accept the document.
 fn differs(api: &'static Mujoco, document: &Node, recipe: Option<&Recipe>, quantity: &str) -> Option<(f64, String)> {
     let mut sides = match Sides::load(api, &document.to_string()) {
         Taken::Both(sides) => sides,

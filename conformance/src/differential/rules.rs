@@ -19,8 +19,8 @@ use whole::*;
 pub enum How {
     /// It does not change the physics: names, colours, sizes of drawn elements.
     Nothing,
-    /// By the place of the element in the document, as with references. These values fit the document of [`super::single`]; if there are none,
-    /// every word of the attribute fits.
+    /// Values that depend on the element's place in the document, such as references. These values fit the document of [`super::single`]; if there
+    /// are none, every word of the attribute fits.
     Placed(&'static [&'static str]),
     /// Any of its words, with a probability.
     Word(f64),

@@ -13,7 +13,7 @@ use crate::mujoco::Mujoco;
 /// A document with all elements.
 const BASE: &str = include_str!("base.xml");
 
-/// Values that are drawn of an attribute of numbers.
+/// Number of values drawn for a numeric attribute.
 const DRAWN: u64 = 4;
 
 /// States from which each document is stepped.
@@ -21,7 +21,7 @@ const STATES: u64 = 12;
 
 /// A document with one attribute set.
 pub struct Single {
-    /// Attribute and value as people read them: `worldbody/body/geom@condim="4"`, with `default/` before it where a class sets it.
+    /// Attribute and value, for display: `worldbody/body/geom@condim="4"`, with `default/` before it where a class sets it.
     pub what: String,
     /// The attribute alone, and whether a class sets it.
     pub attribute: String,
@@ -35,7 +35,7 @@ pub struct Single {
 pub struct Outcome {
     /// Quantities that differ between the sides.
     pub differences: Vec<Measured>,
-    /// Whether MuJoCo takes it.
+    /// Whether MuJoCo accepts it.
     pub taken: bool,
     /// Whether MuJoCo's model or its step differs from those without the attribute.
     pub matters: bool,
@@ -103,7 +103,7 @@ fn set(node: &mut Node, name: &str, value: &str) {
     node.set(name, value);
 }
 
-/// Gives a body principal moments that no body can have, which one attribute is about.
+/// Gives a body impossible principal moments, for the one attribute that concerns them.
 fn unbalance(document: &mut Node) {
     for k in 0..document.count() {
         if let Some(node) = document.nth_mut(k)

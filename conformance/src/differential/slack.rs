@@ -1,4 +1,4 @@
-//! Tolerances between two solvers that stop by the same rule.
+//! Tolerances between two solvers with the same stopping rule.
 //!
 //! Newton's method stops where a step lowers the cost by less than `E = tolerance * meaninertia * nv`. The cost is at least as
 //! curved as the inertia `M`, so accelerations `d` away from its minimum cost at least `d' M d / 2` more than that. The steps that
@@ -12,7 +12,7 @@ use babybench::Model;
 use super::measured::Measured;
 use crate::mujoco::Simulation;
 
-/// Multiples of the cost at which one solver stops that two may be apart.
+/// Allowed distance of two solvers, in multiples of the cost at which one stops.
 const APART: f64 = 4.0;
 
 /// Distance from the optimum at which solvers stop in a state.
@@ -24,7 +24,7 @@ pub struct Slack {
 }
 
 impl Slack {
-    /// Derives it from the options of a model, and the inertia and forces of the state in which MuJoCo is.
+    /// Derives it from the options of a model, and from the inertia and forces of MuJoCo's current state.
     pub fn new(model: &Model, theirs: &Simulation) -> Self {
         let told = model.opt.tolerance * model.stat.meaninertia * model.nv.max(1) as f64;
         let rows = theirs.efc_force().iter().zip(theirs.efc_R());
@@ -35,7 +35,7 @@ impl Slack {
         }
     }
 
-    /// Measures accelerations by the cost; `None` where they are further apart than the rule explains.
+    /// Measures accelerations by the cost; `None` if they differ by more than the rule explains.
     pub fn accelerations(&self, ours: &[f64], theirs: &[f64]) -> Option<Measured> {
         self.within("qacc: by the cost at which solvers stop", ours, theirs, 1.0)
     }

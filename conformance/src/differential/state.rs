@@ -49,7 +49,7 @@ impl Recipe {
         }
     }
 
-    /// Returns the recipes with one part less, for the reducer.
+    /// Returns the recipes with one part removed, for the reducer.
     pub fn simpler(&self) -> Vec<Self> {
         let mut all = vec![*self; 6];
         all[0].warm = 0.0;
@@ -62,7 +62,7 @@ impl Recipe {
         all
     }
 
-    /// Fills a state that is new.
+    /// Fills a new state.
     pub fn fill(&self, model: &Model, state: &mut State) {
         let draw = |what: &str, name: &str, to: &mut [f64], size: f64| {
             let mut rng = Rng::with_seed(hash(hash(self.seed, what), name));

@@ -87,7 +87,7 @@ impl Tally {
         self.findings.extend(other.findings);
     }
 
-    /// Returns what differed, some of each quantity, the worst first.
+    /// Returns the findings, some of each quantity, the worst first.
     pub fn findings(&self) -> Vec<&Finding> {
         let mut all: Vec<&Finding> = self.findings.iter().collect();
         all.sort_by(|a, b| b.error.total_cmp(&a.error));

@@ -26,7 +26,7 @@ pub fn rows(scene: &Scene, environments: &[usize]) -> Result<Vec<Row>, String> {
     Ok(rows)
 }
 
-/// Returns MuJoCo's pictures by OSMesa of both eyes of each state.
+/// Returns the pictures of both eyes that MuJoCo draws with OSMesa for each state.
 pub fn osmesa(scene: &str) -> Result<Vec<u8>, String> {
     let npz = Npz::open(file(scene)).map_err(|e| e.to_string())?;
     Ok(pictures(&npz, "eyes").1.concat())
@@ -136,7 +136,7 @@ fn eyes(states: &[State], cameras: [usize; 2], environments: usize) -> Vec<Rende
     (0..2 * environments).map(request).collect()
 }
 
-/// Draws pictures, an equal share by each renderer in a thread of its own.
+/// Draws pictures, with an equal share for each renderer in its own thread.
 fn by_cpu_in_threads(
     renderers: &mut [CpuRenderer],
     scenery: &Scenery,

@@ -31,7 +31,7 @@ impl Motion {
         Self::Topple,
     ];
 
-    /// Returns the name of the motion for people to read.
+    /// Returns the name of the motion, for display.
     pub fn name(self) -> &'static str {
         match self {
             Self::Passive => "passive",

@@ -11,16 +11,16 @@ use crate::mujoco::{Contact, Mujoco, Simulation};
 /// States of an episode.
 const STATES: usize = 200;
 
-/// Every how many states MuJoCo is compared with itself.
+/// Number of states between two comparisons of MuJoCo with itself.
 const FLOOR_EVERY: usize = 10;
 
-/// Errors of the acceleration above this are looked into.
+/// Errors of the acceleration above this are examined.
 pub const LARGE: f64 = 1e-4;
 
-/// Tries to make MuJoCo jump.
+/// Number of attempts to make MuJoCo jump.
 const NUDGES: u64 = 32;
 
-/// Newton's tolerances of the converged MuJoCo: it stops where rounding ends its progress.
+/// Newton's tolerances of the converged MuJoCo, which stops where rounding ends its progress.
 pub const TIGHT: (f64, f64, usize) = (1e-18, 1e-6, 200);
 
 /// Builds an engine for a scene.

@@ -256,7 +256,7 @@ pub struct Resting {
 }
 
 impl Resting {
-    /// Returns how far the forces are from balancing MIMo's weight, relative to that weight.
+    /// Returns the deviation of the forces from MIMo's weight, relative to that weight.
     pub fn error(&self) -> f64 {
         ((self.contacts + self.welds) / self.weight - 1.0).abs()
     }

@@ -1,4 +1,4 @@
-//! CPU time of our step against MuJoCo's, on the same states, in one process, by turns.
+//! CPU time of our step against MuJoCo's, on the same states, in one process, alternating.
 
 use babybench::physics::{Engine, EngineError, State};
 use rustix::time::{ClockId, clock_gettime};
@@ -6,7 +6,7 @@ use rustix::time::{ClockId, clock_gettime};
 use super::{Case, Drive, Motion};
 use crate::mujoco::{Mujoco, Simulation};
 
-/// Steps that one side does before it is the other's turn: caches are then as warm as in a run.
+/// Steps that one side takes before the other side's turn, so that caches are as warm as in a run.
 const BATCH: usize = 25;
 
 /// Steps before the measurement.

@@ -1,4 +1,4 @@
-//! Long random rollouts: not the path but its statistics, against those of MuJoCo with other seeds.
+//! Statistics of long random rollouts, compared with those of MuJoCo with other seeds.
 
 use babybench::mimo::MimoJoints;
 
@@ -12,7 +12,7 @@ const EVERY: usize = 5;
 /// Steps before the first sample.
 const WARM_UP: usize = 100;
 
-/// Names of what is sampled.
+/// Names of the sampled quantities.
 pub const QUANTITIES: [&str; 6] = [
     "contacts",
     "normal forces, total",

@@ -27,7 +27,7 @@ pub const NAMED: [(&str, i32, &str); 15] = [
     ("key", 24, "nkey"),
 ];
 
-/// A loaded library. What its functions need is kept by the wrappers, which are safe.
+/// A loaded library. The safe wrappers uphold the requirements of its functions.
 pub struct Mujoco {
     version: c_int,
     pub(super) load_xml: unsafe extern "C" fn(*const c_char, Handle, *mut c_char, c_int) -> Handle,

@@ -1,4 +1,4 @@
-//! The real MuJoCo, loaded at run time: nothing of it is needed to build.
+//! The real MuJoCo, loaded at run time; it is not needed to build.
 //!
 //! `conformance/scripts/fetch_mujoco.sh` puts releases into `target/mujoco/VERSION/`. [`Simulation`] is release 3.3.0 with all its
 //! arrays, by the offsets that `scripts/mujoco_offsets.py` took from its headers. [`Release`] is any release, and reads only the state.
@@ -23,7 +23,7 @@ use testkit::yardsticks::{REQUIRED, set_up};
 /// The release that babybench reproduces.
 pub const REFERENCE: &str = "3.3.0";
 
-/// Returns the folder that a release is fetched to.
+/// Returns the folder into which a release is fetched.
 pub fn folder(version: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR"))
         .join("../target/mujoco")

@@ -62,7 +62,7 @@ fn bits(version: &str) -> Result<[u32; PARTS.len()], String> {
 }
 
 impl Release {
-    /// Compiles the file `path` in the release that `api` is.
+    /// Compiles the file `path` in the release `api`.
     ///
     /// # Errors
     /// MuJoCo's message; headers that are not there.

@@ -210,7 +210,7 @@ impl Simulation {
         unsafe { (self.api.step)(self.model, self.data) }
     }
 
-    /// Advances by one time step where MuJoCo may give up, as at an inertia that is singular.
+    /// Advances by one time step where MuJoCo may give up, for example because of a singular inertia.
     ///
     /// # Errors
     /// MuJoCo's message. Only a reset makes the simulation usable again.
@@ -244,7 +244,7 @@ impl Simulation {
         bytes.iter().map(|&v| v != 0).collect()
     }
 
-    /// Returns what a force and a torque at a point do to the joints (nv): `mj_applyFT`.
+    /// Returns the generalised forces (nv) of a force and a torque at a point: `mj_applyFT`.
     pub fn apply_ft(&mut self, body: usize, force: [f64; 3], torque: [f64; 3], point: [f64; 3]) -> Vec<f64> {
         let mut qfrc = vec![0.0; self.size("nv")];
         let (f, t, p) = (force.as_ptr(), torque.as_ptr(), point.as_ptr());
@@ -282,7 +282,7 @@ impl Simulation {
         self.number(const { Count::OfData(field(DATA_SIZES, "nefc").at) })
     }
 
-    /// Returns how many warnings came since the last reset: numbers that are not finite, full buffers, a singular inertia.
+    /// Returns the number of warnings since the last reset: numbers that are not finite, full buffers, a singular inertia.
     pub fn warnings(&self) -> usize {
         // SAFETY: `WARNINGS` pairs of `int`s lie at this offset in mjData, the second of each a number.
         let pairs = unsafe {

@@ -13,7 +13,7 @@ pub struct Document {
     pub path: String,
 }
 
-/// Lists the MJCF documents under some folders, except those that others include, and copies.
+/// Lists the MJCF documents under some folders, except copies and those that others include.
 ///
 /// # Errors
 /// A folder or a file that cannot be read.

@@ -1,4 +1,4 @@
-//! Comparison of a document that both sides take.
+//! Comparison of a document that both sides accept.
 
 use babybench::Model;
 use babybench::physics::{Engine, State};
@@ -118,7 +118,7 @@ pub fn figures(sides: &mut Sides) -> Figures {
         cpu: f64::NAN,
         failure: None,
     };
-    // models of other elements have other states
+    // models with different elements have different states
     if model.nv == 0 || out.arrays.is_infinite() {
         return out;
     }
@@ -138,7 +138,7 @@ pub fn figures(sides: &mut Sides) -> Figures {
     out
 }
 
-/// Lets MuJoCo move under random controls, and shows states on the way.
+/// Lets MuJoCo move under random controls, and passes on the states that it visits.
 fn episode(sides: &mut Sides, seed: u64, see: &mut dyn FnMut(&mut Sides, &State)) {
     let model = sides.model.clone();
     let mut rng = Rng::with_seed(seed);
@@ -242,7 +242,7 @@ fn rollout(sides: &mut Sides, start: &State) -> Option<Rollout> {
     })
 }
 
-/// Measures CPU times of steps by turns, on the same states, with the sensors that the model has.
+/// Measures CPU times of alternating steps, on the same states, with the model's sensors.
 fn cpu(sides: &mut Sides, start: &State) -> f64 {
     let mut ratios = Vec::new();
     let mut state = start.clone();

@@ -1,4 +1,4 @@
-//! Documents that people have, MuJoCo 3.3.0 and ours side by side.
+//! Existing documents in MuJoCo 3.3.0 and in ours, side by side.
 //!
 //! [`find`] lists the documents under some folders, [`compare_all`] compares them with MuJoCo, and [`table`] writes the results, for
 //! people and for programs.
@@ -30,13 +30,13 @@ use crate::processes::{self, Ran};
 pub enum Outcome {
     /// MuJoCo refuses it, or it is a part of another document: it does not count.
     NoDocument,
-    /// Ours takes what MuJoCo refuses, and why that refuses it.
+    /// Ours accepts what MuJoCo refuses, with MuJoCo's reason.
     OursAlone(String),
     /// Ours refuses it, and why.
     Refused(String),
-    /// Both take it.
+    /// Both accept it.
     Both(Box<Figures>),
-    /// MuJoCo reads or writes memory that is not its, as it loads or steps it.
+    /// MuJoCo accesses memory out of bounds while it loads or steps the document.
     Fell,
 }
 
@@ -78,7 +78,7 @@ pub fn compare_all(api: &'static Mujoco, folders: &[PathBuf]) -> Result<Vec<Worl
     Ok(counted(documents, all))
 }
 
-/// Compares all documents under some folders in other processes, so that one at which MuJoCo falls ends no others. `child` makes the command that
+/// Compares all documents under some folders in other processes, so that a crash of MuJoCo affects no other document. `child` makes the command that
 /// calls [`in_child`] for a range of them.
 ///
 /// # Errors

@@ -151,7 +151,7 @@ fn reasons(worlds: &[World]) -> String {
     out
 }
 
-/// Returns a number, or nothing for one that is not finite.
+/// Returns a number, or nothing if it is not finite.
 fn number(value: f64) -> Value {
     if value.is_finite() { json!(value) } else { Value::Null }
 }
@@ -188,7 +188,7 @@ pub fn json(worlds: &[World]) -> Value {
     Value::Array(worlds.iter().map(one).collect())
 }
 
-/// Counts the documents on which the sides disagree, or that only ours takes.
+/// Counts the documents on which the sides disagree, or that only ours accepts.
 pub fn faults(worlds: &[World]) -> usize {
     let fault = |world: &&World| match &world.outcome {
         Outcome::OursAlone(_) => true,

@@ -33,7 +33,7 @@ const NAMING: [(&str, &str); 4] = [
 
 const SETTINGS: [&str; 4] = ["", "meshdir='m'", "assetdir='a'", "meshdir='m' assetdir='a'"];
 
-/// Folders that have the file, by turns alone and in pairs.
+/// Folders that have the file, alone and in pairs in turn.
 const FOLDERS: [&str; 5] = ["", "sub/", "m/", "a/", "sub/m/"];
 
 /// Returns the content of a file that is told by the number of what it brings: points of a mesh, rows of a height field, geoms.

@@ -242,7 +242,7 @@ fn differences(api: &'static Mujoco, content: &str) -> Vec<String> {
     };
     let model = sides.model.clone();
     let mut all: Vec<String> = difference(&model, sides.simulation()).into_iter().collect();
-    // models of other elements have other states
+    // models with different elements have different states
     let states = if model.nv > 0 && all.is_empty() { 8 } else { 0 };
     for seed in 0..states {
         let start = sides.new_state();

@@ -3,7 +3,7 @@ import { sidebar } from "./sidebar.mjs";
 
 const { SITE_SOURCE, SITE_OUT, SITE_VERSION = "", SITE_BASE = "/", SITE_QUICK } = process.env;
 
-/** Settings of a build that only checks the pages: programs without colours, scripts as they are. */
+/** Settings for a build that only checks the pages: code is not highlighted, scripts are not minified. */
 const escape = (text) => text.replace(/[&<>]/g, (c) => ({ "&": "&amp;", "<": "&lt;", ">": "&gt;" })[c]);
 const quick = { markdown: { highlight: (text) => `<pre v-pre><code>${escape(text)}</code></pre>` }, vite: { build: { minify: false } } };
 

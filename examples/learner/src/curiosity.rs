@@ -1,4 +1,4 @@
-//! The intrinsic reward: rare touches of his own body, and feelings that were not predicted.
+//! The intrinsic reward: for rare touches of his own body, and for sensations that were not predicted.
 
 use babybench::Env;
 use babybench::model::Model;
@@ -12,12 +12,12 @@ use crate::network::{Mlp, Noise};
 const SURPRISE: f32 = 0.02;
 /// Worth of a touch that happens in every episode.
 const COMMON_TOUCH: f32 = 0.1;
-/// Share of episodes below which touches are not worth more for being rarer.
+/// Share of episodes below which rarer touches are not worth more.
 const RAREST: f32 = 0.01;
-/// Weight of the last episodes in what is known about shares.
+/// Weight of the last episodes in the estimated shares.
 const FORGETTING: f32 = 0.1;
 
-/// The touches between a hand and another part of the body that an infant can feel: on both sides.
+/// The touches between a hand and another part of the body, which the infant feels on both sides.
 #[derive(Clone, Debug)]
 pub struct DoubleTouch {
     hands: [usize; 2],

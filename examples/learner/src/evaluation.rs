@@ -51,7 +51,7 @@ impl Policy for Learned {
     }
 }
 
-/// Random actions, held as long as those of a mind.
+/// Random actions, held as long as those of the trained policy.
 pub struct Held;
 
 impl Policy for Held {

@@ -47,7 +47,7 @@ impl Mind {
         })
     }
 
-    /// Appends what an environment senses, normalized, and updates the statistics.
+    /// Appends an environment's normalized sensations and updates the statistics.
     pub(crate) fn sense(&mut self, env: &Env, touched: &[bool], out: &mut Vec<f32>) {
         let start = out.len();
         let progress = env.info().steps as f32 / env.config().max_episode_steps.max(1) as f32;

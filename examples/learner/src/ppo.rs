@@ -12,7 +12,7 @@ const DISCOUNT: f32 = 0.98;
 const TRACE: f32 = 0.95;
 /// Limit on the change of an action's probability in an update.
 const CLIP: f64 = 0.2;
-/// Times that an update goes through its experience.
+/// Number of passes of an update through its experience.
 const EPOCHS: usize = 6;
 /// Decisions from which one gradient is computed.
 const MINIBATCH: usize = 400;

@@ -36,7 +36,7 @@ impl Senses {
         }));
     }
 
-    /// Appends a row. `touched` is what was touched in this episode, `progress` how much of it is over, 0 to 1.
+    /// Appends a row. `touched` lists the parts touched in this episode, and `progress` is its elapsed share, 0 to 1.
     pub fn sense(&self, env: &Env, touched: &[bool], progress: f32, out: &mut Vec<f32>) {
         let observation = env.observation();
         let joints = observation.proprioception.iter();

@@ -129,7 +129,7 @@ impl Training {
         Ok(Score::new(self.envs.log().records(), Compat::Api)?.value)
     }
 
-    /// Returns the episodes so far.
+    /// Returns the number of episodes so far.
     pub fn episodes(&self) -> &[Info] {
         self.envs.log().records()
     }
@@ -170,7 +170,7 @@ impl Training {
         })
     }
 
-    /// Decides what all environments do next.
+    /// Decides the next actions of all environments.
     fn decide(&mut self, actions: &mut Vec<f32>) -> Result<(), Error> {
         let (n, len) = (self.envs.len(), self.mind.space.len());
         let start = self.experience.senses.len();

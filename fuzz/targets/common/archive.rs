@@ -5,8 +5,7 @@ use babybench::Env;
 /// An array of an archive: name, shape, numbers.
 type Entry = (&'static str, Vec<usize>, Vec<f64>);
 
-/// Makes a recording of at most two steps, with numbers out of `data` added to those of the present state. It may have
-/// starts of episodes.
+/// Makes a recording of at most two steps, with numbers from `data` added to those of the current state. It may have several episodes.
 pub fn from(data: &[u8], env: &Env) -> Vec<u8> {
     let (model, state) = (env.model(), env.state());
     let (na, mut bytes) = (env.action_space().len(), data.iter().copied());
@@ -51,7 +50,7 @@ pub fn from(data: &[u8], env: &Env) -> Vec<u8> {
     stored(&arrays)
 }
 
-/// Writes an archive whose arrays are not deflated, which costs less than anything that is read from it.
+/// Writes an archive without compression, which costs less than reading it.
 fn stored(arrays: &[Entry]) -> Vec<u8> {
     let (mut out, mut directory) = (Vec::new(), Vec::new());
     for (name, shape, values) in arrays {

@@ -1,4 +1,4 @@
-"""HDF5, by h5py: every array of a record, with its unit and its meaning."""
+"""HDF5, written with h5py: every array of a record, with its unit and its meaning."""
 
 from __future__ import annotations
 

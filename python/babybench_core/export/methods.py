@@ -11,7 +11,7 @@ if TYPE_CHECKING:
 
 
 class Exports:
-    """Exports of :class:`babybench.data.Record` by libraries that are imported on first use."""
+    """Exports of :class:`babybench.data.Record`, with libraries that are imported on first use."""
 
     @property
     def _record(self) -> Record:

@@ -1,4 +1,4 @@
-"""Neurodata Without Borders, by pynwb: one session, whose trials are the episodes."""
+"""Neurodata Without Borders, written with pynwb: one session, whose trials are the episodes."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Parquet, by pyarrow: one table, a row for each step of every episode."""
+"""Parquet, written with pyarrow: one table, with a row for each step of every episode."""
 
 from __future__ import annotations
 

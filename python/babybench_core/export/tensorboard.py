@@ -71,7 +71,7 @@ def _checksums(records: npt.NDArray[np.uint8]) -> npt.NDArray[np.uint32]:
 
 
 def _framed(events: npt.NDArray[np.uint8]) -> bytes:
-    """Returns serialised events of one length, (events, bytes), as an event file holds them."""
+    """Returns serialised events of one length, (events, bytes), in the format of an event file."""
     count, size = events.shape
     length = np.broadcast_to(np.frombuffer(np.uint64(size).tobytes(), np.uint8), (count, 8))
     of_length, of_event = (_checksums(part).astype("<u4").view(np.uint8).reshape(count, 4) for part in (length, events))

@@ -1,4 +1,4 @@
-"""Times in which touch sensors felt something, from any contact or only from his own body."""
+"""How long touch sensors felt something, from any contact or only from his own body."""
 
 from __future__ import annotations
 

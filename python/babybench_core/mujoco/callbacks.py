@@ -1,4 +1,4 @@
-"""Functions of programs that MuJoCo calls: they can be read and reset, and setting one is refused."""
+"""Functions of programs that MuJoCo calls: they can be read and reset, but not set."""
 
 from __future__ import annotations
 

@@ -369,7 +369,7 @@ class mjtTexture(enum.IntEnum):
 
 
 class mjtSameFrame(enum.IntEnum):
-    """Frames that are the same."""
+    """Equalities between frames."""
 
     mjSAMEFRAME_NONE = 0
     mjSAMEFRAME_BODY = 1
@@ -460,7 +460,7 @@ class mjtFramebuffer(enum.IntEnum):
 
 
 class mjtGridPos(enum.IntEnum):
-    """Places of text on pictures."""
+    """Positions of text on pictures."""
 
     mjGRID_TOPLEFT = 0
     mjGRID_TOPRIGHT = 1

@@ -199,7 +199,7 @@ class MjModel(Named, metaclass=Fields):
 
     @classmethod
     def from_binary_path(cls, filename: str, assets: Any = None) -> MjModel:
-        """Refuses: compiled models of MuJoCo's (MJB) are not read."""
+        """Refuses: MuJoCo's compiled models (MJB) are not read."""
         raise ValueError(
             f"{filename}: compiled models (MJB) are not read here; use the document, with MjModel.from_xml_path"
         )
@@ -265,7 +265,7 @@ class MjModel(Named, metaclass=Fields):
         """Pickles the document and what was written into the model.
 
         Raises:
-            TypeError: The document is not known as text.
+            TypeError: The document is not UTF-8 text.
         """
         if self._source is None:
             raise TypeError(
@@ -309,7 +309,7 @@ class MjModel(Named, metaclass=Fields):
         return array.astype(np.float32) if name in _SINGLES else array
 
     def _derived(self, name: str) -> Any:
-        """Returns a field of MuJoCo's that the engine stores in another form, or nothing."""
+        """Returns a MuJoCo field that the engine stores in a different form, or nothing."""
         if name in DERIVED:
             return DERIVED[name](self)
         if name in NOT_OF_MODELS:

@@ -251,7 +251,7 @@ def mju_dense2sparse(
 
 
 def mju_sparse2dense(res: _Floats, mat: ArrayLike, rownnz: ArrayLike, rowadr: ArrayLike, colind: ArrayLike) -> None:
-    """Writes rows of numbers that are not 0 as a whole matrix."""
+    """Writes a sparse matrix as a dense one."""
     values, columns = np.asarray(mat, np.float64), np.asarray(colind)
     res[...] = 0.0
     for row, (first, count) in enumerate(zip(np.asarray(rowadr), np.asarray(rownnz))):
@@ -277,7 +277,7 @@ def mju_warningText(warning: int, info: int) -> str:
 
 
 def mju_writeNumBytes(nbytes: int) -> str:
-    """Returns a number of bytes in a unit of 1024 and its powers."""
+    """Returns a number of bytes as text, in units of powers of 1024."""
     units, power = " KMGTPE", 0
     while power < 6 and nbytes >> (10 * (power + 1)):
         power += 1

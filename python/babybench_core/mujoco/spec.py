@@ -99,7 +99,7 @@ class MjSpec(SpecTree):
 
     @staticmethod
     def from_file(filename: str | os.PathLike[str], include: Any = None, assets: Any = None) -> MjSpec:
-        """Reads a file, with what it includes.
+        """Reads a file and the files that it includes.
 
         Args:
             filename: The path.
@@ -223,7 +223,7 @@ class MjSpec(SpecTree):
         return None if at is None else self._wrap(at, TYPES[kind])
 
     def detach_body(self, body: MjsBody) -> None:
-        """Removes a body from the document, with all in it and what refers to any of it."""
+        """Removes a body from the document, with its contents and whatever refers to them."""
         body.delete()
 
     def attach(
@@ -234,7 +234,7 @@ class MjSpec(SpecTree):
         site: MjsSite | str | None = None,
         frame: MjsFrame | str | None = None,
     ) -> MjsFrame:
-        """Copies all of another document's world into a frame, or to where a site is. Returns the new frame in it.
+        """Copies the whole world of another document into a frame, or to a site. Returns the new frame in it.
 
         Args:
             child: The other document.

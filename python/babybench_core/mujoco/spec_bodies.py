@@ -217,7 +217,7 @@ class MjsBody(Posed):
         return found
 
     def delete(self) -> None:
-        """Removes the body from its document, with all in it and what refers to any of it."""
+        """Removes the body from its document, with its contents and whatever refers to them."""
         self._delete(alone=False)
 
 

@@ -153,7 +153,7 @@ class MjsSite(Classed, Placed, Posed):
     userdata = Many("user")
 
     def attach_body(self, body: MjsBody, prefix: str = "", suffix: str = "") -> MjsBody:
-        """Copies a body of another document to where the site is; see :meth:`MjsFrame.attach_body`."""
+        """Copies a body of another document to the site; see :meth:`MjsFrame.attach_body`."""
         frame = self._spec._frame_at_site(self)
         return frame.attach_body(body, prefix, suffix)
 
@@ -207,7 +207,7 @@ class MjsFrame(Placed, Posed):
     quat = Quat("quat", IDENTITY)
 
     def attach_body(self, body: MjsBody, prefix: str = "", suffix: str = "") -> MjsBody:
-        """Copies a body, of another document or of this one, into the frame, with all in it and what refers only to that.
+        """Copies a body, of another document or of this one, into the frame, with its contents and what refers only to them.
 
         Args:
             body: The body.

@@ -121,7 +121,7 @@ def mj_defaultLROpt(opt: MjLROpt) -> None:
 
 
 class MjvPerturb(Struct):
-    """A body that a user has selected and pulls, in a window."""
+    """A body that a user has selected in a window and pulls."""
 
     FIELDS: ClassVar = {
         **{"select": 0, "flexselect": -1, "skinselect": -1, "active": 0, "active2": 0},
@@ -153,7 +153,7 @@ class MjrRect(Struct):
 
 
 class MjvFigure(Struct):
-    """A plot of curves. It can be filled, and is not drawn: ``mjr_figure`` is missing."""
+    """A plot of curves. It can be filled but not drawn: ``mjr_figure`` is missing."""
 
     FIELDS: ClassVar = {
         **{

@@ -71,7 +71,7 @@ def mju_zero(res: _Floats) -> None:
 
 
 def mju_fill(res: _Floats, val: float) -> None:
-    """Sets all numbers to one."""
+    """Sets all numbers to a value."""
     res[...] = val
 
 

@@ -112,7 +112,7 @@ def launch(model: Any = None, data: Any = None, *, show_left_ui: bool = True, sh
     """Opens a page and steps the state until the program is interrupted (Ctrl-C).
 
     Raises:
-        NotImplementedError: Another model than that of an environment.
+        NotImplementedError: The model does not belong to an environment.
     """
     with contextlib.suppress(KeyboardInterrupt), Handle(model, data) as handle:
         while handle.is_running():

@@ -79,7 +79,7 @@ class Copy(Enum):
 
 
 class Turn(Enum):
-    """The code that currently runs."""
+    """The code that is running."""
 
     SCRIPT = "script"
     """Code that may hold the copy and write to it."""
@@ -99,7 +99,7 @@ class Share(Enum):
 
 
 class IllegalChange(RuntimeError):
-    """A change that is not in the tables: a fault of this package, not of a script."""
+    """A change that is not in the tables: a fault in this package, not in a script."""
 
 
 _MOMENTS: dict[str, dict[Moment, Moment]] = {

@@ -268,7 +268,7 @@ class BabyBenchSelfTouchEnv(BabyBenchEnv):
         self.mimo_geoms = subtree_geoms(self._core, self.mimo_bodies)
 
     def _info(self) -> dict[str, Any]:
-        """Returns the geoms that the palms have touched; the lists are the same all through an episode."""
+        """Returns the geoms that the palms have touched; the lists stay the same objects throughout an episode."""
         right, left = self._self_touch_right_hand, self._self_touch_left_hand
         if self._core.course.moment.computed:
             parts = self._core.parts

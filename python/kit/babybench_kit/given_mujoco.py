@@ -75,13 +75,13 @@ FIXED = (
 
 
 def is_model(model: Any) -> bool:
-    """Returns whether this is a model of MuJoCo's own."""
+    """Returns whether this is one of MuJoCo's own models."""
     mujoco = mujoco_module()
     return mujoco is not None and isinstance(model, mujoco.MjModel)
 
 
 def is_state(data: Any) -> bool:
-    """Returns whether this is a state of MuJoCo's own."""
+    """Returns whether this is one of MuJoCo's own states."""
     mujoco = mujoco_module()
     return mujoco is not None and isinstance(data, mujoco.MjData)
 
@@ -97,7 +97,7 @@ def adopt(core: Core, model: Any, path: str) -> None:
     """Uses a model as that of an environment, and passes to the engine what a program has written into it.
 
     Raises:
-        ValueError: It has other elements than the document, or numbers that a running environment cannot use.
+        ValueError: Its elements differ from the document's, or it has numbers that a running environment cannot use.
     """
     mujoco = mujoco_module()
     assert mujoco is not None
@@ -130,7 +130,7 @@ def adopt(core: Core, model: Any, path: str) -> None:
 
 
 def _compare_names(model: Any, fresh: Any, path: str) -> None:
-    """Raises an error if a model has other elements than that of the document."""
+    """Raises an error if the elements of a model differ from those of the document's model."""
     for size in _SIZES:
         now, first = int(getattr(model, size)), int(getattr(fresh, size))
         if now != first:

@@ -34,7 +34,7 @@ def _bodies(root: ElementTree.Element) -> Iterator[ElementTree.Element]:
 
 
 def grown(path: Path, age: float) -> ElementTree.Element:
-    """Returns a document in which MIMo has an age, months, with everything that it includes.
+    """Returns a document with its includes, in which MIMo has an age, months.
 
     Raises:
         ValueError: MIMo has no size at this age, or the document has bodies that are not written out.

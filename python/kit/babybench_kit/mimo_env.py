@@ -265,7 +265,7 @@ class MIMoEnv(TakesModels, GoalEnv):
         self.mimo_actuators = np.asarray([number for number, name in names if name.startswith("act:")])
 
     def _get_facial_expressions(self, emotion_textures: Mapping[str, str]) -> None:
-        """Finds :attr:`facial_expressions`: the ids of the textures that ``emotion_textures`` names by expressions."""
+        """Finds :attr:`facial_expressions`: the ids of the textures that ``emotion_textures`` lists by expression."""
         extras = _native.model_extras(self._core.blueprint)
         textures: list[str] = extras["texture"]
         materials: list[str] = extras["material"]
@@ -275,7 +275,7 @@ class MIMoEnv(TakesModels, GoalEnv):
         }
 
     def _set_initial_position(self, initial_qpos: Mapping[str, ArrayLike] | None) -> None:
-        """Moves joints to the positions that a dictionary has by their names."""
+        """Moves joints to the positions that a dictionary gives by name."""
         if not initial_qpos:
             return
         array, joints = self._core.blueprint.model_array, self._core.names["joint"]

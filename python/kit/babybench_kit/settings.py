@@ -1,4 +1,4 @@
-"""From the kit's configurations to the engine's."""
+"""Converts the kit's configurations to the engine's."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ def known(config: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def _names(params: Mapping[str, Any]) -> dict[str, Any]:
-    """Returns the keys of a configuration that name the functions of touch parameters."""
+    """Returns the keys of a configuration that name the functions in touch parameters."""
     keys: dict[str, Any] = {"touch_active": True}
     for key, function in (("touch_function", "touch_function"), ("touch_response", "response_function")):
         # a name that the engine does not have is a method of the sense, which then computes without the engine
@@ -48,7 +48,7 @@ def _names(params: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def _touch(params: Mapping[str, Any]) -> dict[str, Any] | None:
-    """Returns the keys of a configuration that give the sensors of touch parameters; ``None`` if no keys give them."""
+    """Returns the keys of a configuration for the sensors in touch parameters; ``None`` if no keys can express them."""
     scales = params["scales"]
     factors = {round(scale / SPACING_V1[body], 12) for body, scale in scales.items() if body in SPACING_V1}
     keys = _names(params)
@@ -64,7 +64,7 @@ def _touch(params: Mapping[str, Any]) -> dict[str, Any] | None:
 
 
 def _own_touch(params: Mapping[str, Any]) -> tuple[dict[str, Any], list[tuple[str, float]]]:
-    """Returns the keys of a configuration, and any distances between sensors, of touch parameters."""
+    """Returns the keys of a configuration for touch parameters, and any distances between sensors."""
     keys = {**_names(params), **{f"touch_{part}": True for part in PARTS}, "touch_scale": 1.0}
     return keys, [(str(body), float(scale)) for body, scale in params["scales"].items()]
 

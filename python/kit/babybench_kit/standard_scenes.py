@@ -151,7 +151,7 @@ _HELD_ANGLES = {"shoulder_ad_ab": 1.4, "elbow": -1.57, "fingers": -0.785, "knee"
 
 
 def _hold_joints(root: ElementTree.Element) -> None:
-    """Holds every joint, stiffly, as the static test of muscles does."""
+    """Holds every joint stiffly, as the static test of muscles does."""
     for lock in root.iter("joint"):
         name = lock.get("joint1")
         if name is None:

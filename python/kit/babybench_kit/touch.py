@@ -157,7 +157,7 @@ class TrimeshTouch(Touch):
         return np.asarray(np.linalg.norm(mesh.vertices - np.asarray(point), axis=-1))
 
     def get_nearest_sensor(self, contact_pos: ArrayLike, body_id: int) -> tuple[int, float]:
-        """Returns the sensor of a body that is nearest to a point, frame of the body, and its distance, m."""
+        """Returns the sensor of a body that is nearest to a point in the frame of the body, and its distance, m."""
         distances = self._sensor_distances(contact_pos, self.meshes[body_id])
         nearest = int(distances.argmin())
         return nearest, float(distances[nearest])
@@ -165,7 +165,7 @@ class TrimeshTouch(Touch):
     def get_k_nearest_sensors(
         self, contact_pos: ArrayLike, body_id: int, k: int, k_margin: float = 1.4
     ) -> tuple[NDArray[np.int_], Array]:
-        """Returns the k sensors of a body that are nearest to a point, frame of the body, and their distances, m."""
+        """Returns the k sensors of a body that are nearest to a point in the frame of the body, and their distances, m."""
         distances = self._sensor_distances(contact_pos, self.meshes[body_id])
         nearest = np.argsort(distances, kind="stable")[:k]
         return nearest, distances[nearest]
@@ -173,7 +173,7 @@ class TrimeshTouch(Touch):
     def get_sensors_within_distance(
         self, contact_pos: ArrayLike, body_id: int, distance_limit: float, distance_margin: float = 1.5
     ) -> tuple[NDArray[np.int_], Array]:
-        """Returns the sensors of a body within a distance of a point, frame of the body, and their distances, m."""
+        """Returns the sensors of a body within a distance of a point in the frame of the body, and their distances, m."""
         distances = self._sensor_distances(contact_pos, self.meshes[body_id])
         near = np.flatnonzero(distances < distance_limit)
         return near, distances[near]
@@ -186,11 +186,11 @@ class TrimeshTouch(Touch):
         return -1.0 if self._core.body_of_geom[first] == body_id else 1.0
 
     def get_contact_position_world(self, contact_id: int) -> Array:
-        """Returns the point of a contact, halfway between the surfaces, world, m."""
+        """Returns the point of a contact, halfway between the surfaces, in the world, m."""
         return np.array(self._core.contacts()["pos"][contact_id])
 
     def get_contact_position_relative(self, contact_id: int, body_id: int) -> Array:
-        """Returns the point of a contact on the surface of a body, frame of the body, m."""
+        """Returns the point of a contact on the surface of a body, in the frame of the body, m."""
         contacts = self._core.contacts()
         point = utils.world_pos_to_body(self._core.poses, self.get_contact_position_world(contact_id), body_id)
         distance = contacts["dist"][contact_id]
@@ -203,7 +203,7 @@ class TrimeshTouch(Touch):
         return np.asarray(self._core.contacts()["force"][contact_id][:3] * self._sides(contact_id, body_id))
 
     def get_contact_normal(self, contact_id: int, body_id: int) -> Array:
-        """Returns the unit normal of a contact into a body, frame of the body; inverts it in place for that of the first geom."""
+        """Returns the unit normal of a contact into a body, in its frame; inverts it in place for that of the first geom."""
         normal = self._frames()[contact_id][:3]
         normal *= self._sides(contact_id, body_id)
         return utils.world_rot_to_body(self._core.poses, normal, body_id)
@@ -225,12 +225,12 @@ class TrimeshTouch(Touch):
         contacts["frame"][active & self._sensed[contacts["geom1"]], :3] *= -1
 
     def force_vector_global(self, contact_id: int, body_id: int) -> Array:
-        """Returns the force of a contact on a body, world, N."""
+        """Returns the force of a contact on a body, in the world, N."""
         frame = np.reshape(self._frames()[contact_id], (3, 3))
         return np.asarray(frame.T.dot(self.get_raw_force(contact_id, body_id)))
 
     def force_vector(self, contact_id: int, body_id: int) -> Array:
-        """Returns the force of a contact on a body, frame of the body, N."""
+        """Returns the force of a contact on a body, in the frame of the body, N."""
         return utils.world_rot_to_body(self._core.poses, self.force_vector_global(contact_id, body_id), body_id)
 
     def normal_force(self, contact_id: int, body_id: int) -> Array:
@@ -390,13 +390,13 @@ class TrimeshTouch(Touch):
     def plot_force_body(
         self, body_id: int | None = None, body_name: str | None = None, title: str = ""
     ) -> tuple[Any, Any]:
-        """Plots what the sensors of a body feel with matplotlib, and returns figure and axes."""
+        """Plots what the sensors of a body feel, with matplotlib; returns figure and axes."""
         return self._plot([self._bodies([], [body_name or ""])[0] if body_id is None else body_id], title, forces=True)
 
     def plot_force_bodies(
         self, body_ids: list[int] | None = None, body_names: list[str] | None = None, title: str = "", **_: Any
     ) -> tuple[Any, Any]:
-        """Plots what the sensors of several bodies feel with matplotlib, and returns figure and axes."""
+        """Plots what the sensors of several bodies feel, with matplotlib; returns figure and axes."""
         return self._plot(self._bodies(body_ids or [], body_names or []), title, forces=True)
 
     def plot_force_body_subtree(
@@ -406,7 +406,7 @@ class TrimeshTouch(Touch):
         title: str = "",
         show_contact_points: bool = False,
     ) -> tuple[Any, Any]:
-        """Plots what the sensors of a body and of those below it feel with matplotlib, and returns figure and axes."""
+        """Plots with matplotlib what the sensors of a body and those below it feel; returns figure and axes."""
         root = self._bodies([], [body_name or ""])[0] if body_id is None else body_id
         return self._plot(utils.get_child_bodies(self._core.tree, root), title, forces=True)
 

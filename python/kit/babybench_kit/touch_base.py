@@ -19,7 +19,7 @@ class SensorMesh:
     """The sensors of a body.
 
     Attributes:
-        vertices: Their positions, (n, 3), frame of the body, m.
+        vertices: Their positions, (n, 3), in the frame of the body, m.
     """
 
     def __init__(self, vertices: Array) -> None:
@@ -66,7 +66,7 @@ class Touch(Replaceable):
         sensor_scales: Distance between the sensors of each body, by its id, m.
         touch_type: What a sensor reports; ``touch_function`` is the method, ``touch_size`` the number of values.
         response_type: How a force spreads; ``response_function`` is the method.
-        sensor_positions: Where the sensors of each body are, (n, 3), frame of the body, m.
+        sensor_positions: Where the sensors of each body are, (n, 3), in the frame of the body, m.
         sensor_outputs: What they felt last, (n, touch_size), N.
     """
 

@@ -40,7 +40,7 @@ def rotate_vector_transpose(vector: ArrayLike, rot_matrix: ArrayLike) -> Array:
 
 
 def weighted_sum_vectors(vector1: ArrayLike, vector2: ArrayLike, weight1: float, weight2: float) -> Array:
-    """Returns the mean of two vectors with weights."""
+    """Returns the weighted mean of two vectors."""
     weighted = np.asarray(vector1) * weight1 + np.asarray(vector2) * weight2
     return np.asarray(weighted / (weight1 + weight2))
 
@@ -126,7 +126,7 @@ def set_joint_qpos(mujoco_model: Any, mujoco_data: Any, joint_name: str, qpos: A
 
 
 def set_joint_locking_angle(mujoco_model: Any, joint_name: str, angle: float, constraint_id: int | None = None) -> None:
-    """Sets the angle, rad from the reference pose, at which :func:`lock_joint` holds a joint from the next reset on."""
+    """Sets the angle, rad from the reference pose, at which :func:`lock_joint` holds a joint after the next reset."""
     constraint = mujoco_model.equality(joint_name if constraint_id is None else int(np.ravel(constraint_id)[0]))
     constraint.data[0] = np.ravel(angle)[0]
     constraint.data[1:] = 0
@@ -137,7 +137,7 @@ def _scalar(value: Any) -> int:
 
 
 def lock_joint(mujoco_model: Any, joint_name: str, joint_angle: float | None = None) -> None:
-    """Locks a joint from the next reset on: at an angle, rad, or at the angle set for it, unless something else holds it."""
+    """Locks a joint at the next reset: at an angle, rad, or at the angle set for it, unless something else holds it."""
     own = mujoco_model.equality(joint_name)
     if joint_angle is not None:
         set_joint_locking_angle(mujoco_model, joint_name, joint_angle, own.id)
@@ -153,7 +153,7 @@ def lock_joint(mujoco_model: Any, joint_name: str, joint_angle: float | None = N
 
 
 def unlock_joint(mujoco_model: Any, joint_name: str) -> None:
-    """Unlocks a joint from the next reset on."""
+    """Unlocks a joint at the next reset."""
     mujoco_model.eq_active0[mujoco_model.equality(joint_name).id] = 0
 
 

@@ -6,7 +6,7 @@ use crate::model::{BiasType, DynType, GainType, Model};
 
 /// Lengths of a muscle, in optimal lengths, at the two ends of its joint's range.
 const LENGTH_RANGE: [f64; 2] = [0.75, 1.05];
-/// Added to numerators and denominators, as in the reference.
+/// A number that is added to numerators and denominators, as in the reference.
 const EPSILON: f64 = 1e-10;
 /// The geometry and strength of the two muscles of one actuator, after Wochner et al. 2022.
 ///
@@ -121,8 +121,8 @@ impl MuscleParams {
         })
     }
 
-    /// Returns the activities, 0..1, that add the torque of a reflex at an angle (rad) and velocity (rad/s) of the joint. Where the action
-    /// is suppressed, the torque takes the place of what the stretched muscles pull, too.
+    /// Returns the activities, 0..1, that add the torque of a reflex at an angle (rad) and velocity (rad/s) of the joint. Where the action is
+    /// suppressed, the torque also replaces the pull of the stretched muscles.
     #[inline]
     pub(crate) fn activities(&self, angle: f64, velocity: f64, command: &MotorCommand) -> [f64; 2] {
         let length = self.lengths(angle);

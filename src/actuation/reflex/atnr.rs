@@ -1,4 +1,4 @@
-//! The asymmetric tonic neck reflex: when the head is turned, arm and leg of the face's side stretch and the others bend.
+//! The asymmetric tonic neck reflex: when the head is turned, the arm and leg on the face's side stretch and the others bend.
 
 use super::motors::{Motor, Motors};
 use super::{Built, LoopInput, MotorCommand, ReflexLoop, follow, ramp};

@@ -5,7 +5,7 @@ use crate::mimo::MimoBodies;
 use crate::model::Model;
 use crate::physics::{Contact, ContactSide, State};
 
-/// Which of MIMo's bodies a reflex watches: for each geom of the scene the number of its group.
+/// The bodies of MIMo that a reflex watches: the group number of each geom of the scene.
 pub(super) struct Watched {
     groups: Vec<Option<u8>>,
     /// Whether a geom is MIMo's.

@@ -29,7 +29,7 @@ const TOES: [(&str, f64); 2] = [("toes", -1.0), ("big_toe", -1.0)];
 
 struct Grasp {
     watched: Watched,
-    /// The motors that bend on the left and on the right side, with the angles they bend to, rad.
+    /// The motors that bend the left and the right side, with their target angles, rad.
     motors: [Vec<(Motor, f64)>; 2],
     place: Place,
     /// Pressure at which it begins, and the further pressure at which it is full, N.

@@ -27,13 +27,13 @@ use crate::spaces::NumpyRng;
 
 pub(crate) use tables::ReflexTables;
 
-/// What reflexes command of an actuator in a physics step.
+/// The command of the reflexes to an actuator in a physics step.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct MotorCommand {
     /// Torque on the joint, N m, in addition to that of the action.
     pub torque: f64,
-    /// The share of the action's command that is suppressed, 0 to 1. At 1 the torque replaces the springs of servos and what
-    /// stretched muscles pull, too.
+    /// The share of the action's command that is suppressed, 0 to 1. At 1 the torque also replaces the springs of servos and the pull of stretched
+    /// muscles.
     pub suppress: f64,
 }
 
@@ -55,7 +55,7 @@ trait ReflexLoop: Send + Sync {
     fn act(&self, input: &mut LoopInput<'_>, commands: &mut [MotorCommand]) -> f64;
 }
 
-/// A loop, and its delay, ms.
+/// A loop and its delay, ms.
 struct Built {
     inner: Box<dyn ReflexLoop>,
     /// Part of the delay that passes in the loop itself, ms.
@@ -64,7 +64,7 @@ struct Built {
 
 /// The input of a loop.
 struct LoopInput<'a> {
-    /// The state before the physics step, of which only positions, velocities and parameters are known.
+    /// The state before the physics step; only its positions, velocities and parameters are known.
     state: &'a State,
     /// The stimulus after the delay.
     stimulus: &'a [f64],
@@ -77,8 +77,7 @@ struct LoopInput<'a> {
 }
 
 impl LoopInput<'_> {
-    /// Moves each remembered level towards how far its stimulus is above a threshold, in widths, with the time constants
-    /// `[rising, falling]`, s.
+    /// Moves each remembered level towards the stimulus above a threshold, in widths, with the time constants `[rising, falling]`, s.
     fn follow_stimuli(&mut self, [threshold, width]: [f64; 2], times: [f64; 2]) {
         for (level, stimulus) in self.memory.iter_mut().zip(self.stimulus) {
             follow(level, ramp(*stimulus, threshold, width), times, self.h);
@@ -86,7 +85,7 @@ impl LoopInput<'_> {
     }
 }
 
-/// The reflexes of an environment: what they share, and what they remember.
+/// The reflexes of an environment: their shared tables and their memory.
 #[derive(Clone)]
 pub(crate) struct Reflexes {
     tables: Arc<ReflexTables>,
@@ -109,7 +108,7 @@ impl Reflexes {
         }
     }
 
-    /// Switches to the tables of a changed model, in which the same reflexes have the same memory.
+    /// Switches to the tables of a changed model, in which the same reflexes use the same memory.
     pub fn use_tables(&mut self, tables: &Arc<ReflexTables>) {
         self.tables.clone_from(tables);
     }

@@ -1,4 +1,4 @@
-//! The Moro reflex: when the head drops, the arms spread and stretch, then close. It runs its course once, whatever happens meanwhile.
+//! The Moro reflex: when the head drops, the arms spread and stretch, then close. Once started, it runs to its end.
 
 use super::motors::{Motor, Motors};
 use super::{Built, LoopInput, MotorCommand, ReflexLoop};

@@ -15,7 +15,7 @@ const MOUTH: Vec3 = [0.819_152_044_288_991_8, 0.0, -0.573_576_436_351_046];
 struct Rooting {
     watched: Watched,
     neck: Motor,
-    /// The mouth in the frame of the head, m, and the distance of touches that are beside it, m.
+    /// The mouth in the frame of the head, m, and the distance within which touches are beside it, m.
     mouth: Vec3,
     beside: f64,
 }

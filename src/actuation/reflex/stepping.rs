@@ -1,5 +1,5 @@
-//! Stepping: an upright infant whose soles carry weight bends and stretches his legs in turn. Two half-centres share a cycle; each bends a leg
-//! in its half and stretches it in the other.
+//! Stepping: an upright infant whose soles carry weight bends and stretches his legs in turn. Two half-centres share a cycle; each bends its leg in
+//! its own half and stretches it in the other.
 
 use super::contacts::{Watched, side};
 use super::motors::{Motor, Motors};

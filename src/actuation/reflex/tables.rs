@@ -1,4 +1,4 @@
-//! What the reflexes of all environments of a configuration share.
+//! Tables that the reflexes of all environments of a configuration share.
 
 use super::motors::Motors;
 use super::{Built, ReflexLoop, atnr, grasp, moro, rooting, stepping, stretch, vor};
@@ -89,7 +89,7 @@ impl ReflexTables {
         &self.loops
     }
 
-    /// Returns how many reflexes there are.
+    /// Returns the number of reflexes.
     pub fn len(&self) -> usize {
         self.loops.len()
     }

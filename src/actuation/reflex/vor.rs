@@ -15,7 +15,7 @@ use crate::physics::State;
 
 /// Share of an eye's momentum that the correction restores in a physics step. Our choice.
 const CORRECTION: f64 = 0.25;
-/// Velocity at which the friction that the torque overcomes is half of the whole, rad/s. Our choice.
+/// Velocity at which the torque overcomes half of the friction, rad/s. Our choice.
 const SLIDING: f64 = 0.05;
 /// Velocity of an eye at which the reflex is reported to act fully, rad/s. Our choice.
 const FULL: f64 = 1.0;

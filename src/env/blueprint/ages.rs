@@ -106,14 +106,14 @@ impl Blueprint {
         Self::with(config, options)
     }
 
-    /// Begins to keep the blueprints of other ages, and this one.
+    /// Starts to keep the blueprints of other ages, beginning with this one.
     pub(super) fn keeping_ages(self) -> Self {
         let ages = AgeCache::default();
         ages.keep(&self);
         Self { ages, ..self }
     }
 
-    /// Returns the same blueprint without those of other ages, among which it would keep itself.
+    /// Returns the same blueprint without those of other ages, which would contain it.
     fn without_ages(self) -> Self {
         Self {
             ages: AgeCache::default(),

@@ -50,8 +50,7 @@ pub struct SettledScene {
 }
 
 impl SettledScene {
-    /// Settles the scene as the task does, with the locks of the configuration. Under `compat: reference` locks apply from the first
-    /// reset on.
+    /// Settles the scene as the task does, with the locks of the configuration. Under `compat: reference`, locks apply only after the first reset.
     pub fn new(
         config: &Config,
         task: &dyn Task,

@@ -55,7 +55,7 @@ pub enum SnapshotError {
     /// The bytes are not a snapshot.
     #[error("these bytes are not a snapshot: they do not start with its magic bytes")]
     NotASnapshot,
-    /// Written by another version of this library.
+    /// The snapshot was written by another version of this library.
     #[error("the snapshot has layout {found}, but this library reads layout {VERSION}")]
     Version {
         /// Version found.
@@ -67,13 +67,13 @@ pub enum SnapshotError {
         /// The fault.
         what: &'static str,
     },
-    /// Taken with other values of keys of the configuration, or with another model ([`ModelMut::change`](crate::env::ModelMut::change)).
+    /// The snapshot was taken with a different configuration, or with another model ([`ModelMut::change`](crate::env::ModelMut::change)).
     #[error("the snapshot was taken with another configuration: {differences}")]
     OtherConfiguration {
         /// The differences: each key with its value then and now.
         differences: String,
     },
-    /// Taken from an environment of another scene, or, in a layout that cannot tell, of another configuration.
+    /// The snapshot was taken from an environment of another scene, or of another configuration if the layout cannot tell.
     #[error(
         "the snapshot was taken with another behavior, scene, actuation model, compat, set of actuators or of senses"
     )]

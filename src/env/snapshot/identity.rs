@@ -1,4 +1,4 @@
-//! The owner of a snapshot: a scene, and the keys of a configuration.
+//! The identity of a snapshot: a scene, and the keys of a configuration.
 
 use std::collections::BTreeMap;
 
@@ -18,7 +18,7 @@ pub(crate) struct Identity {
     pub keys: String,
 }
 
-/// Keys on which no snapshot depends: those of the run around an environment, and of pictures, which no snapshot holds.
+/// Keys on which no snapshot depends: those about the run around an environment, and about pictures, which no snapshot holds.
 const APART: [&str; 9] = [
     "save_dir",
     "max_episode_steps",
@@ -71,7 +71,7 @@ impl Identity {
         Self { fingerprint, keys }
     }
 
-    /// Returns the error for a snapshot with these keys that does not fit; `otherwise` if the keys do not explain it.
+    /// Returns the error for a snapshot with these keys that does not match; `otherwise` if the keys do not explain it.
     pub fn refuse(&self, keys: &str, otherwise: SnapshotError) -> SnapshotError {
         let (then, now) = (lines(keys), lines(&self.keys));
         let names = order::set(then.keys().chain(now.keys()).copied());

@@ -30,7 +30,7 @@ impl Env {
         }
     }
 
-    /// Restores what [`Env::save_memory`] wrote. Other data change nothing.
+    /// Restores what [`Env::save_memory`] wrote. Invalid data change nothing.
     pub(crate) fn load_memory(&mut self, bytes: &[u8]) -> Result<(), SnapshotError> {
         let mut before = Vec::new();
         self.save_memory(&mut before);

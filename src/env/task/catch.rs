@@ -16,9 +16,9 @@ use crate::sensors::touch::MIN_FORCE;
 const PURPOSE: &str = "behavior catch";
 /// Greatest shift of the ball at the start of an episode, m.
 const SHIFT: Vec3 = [0.01, 0.01, 0.08];
-/// Radius of the ball, m: from, to.
+/// Range of the ball's radius, m.
 const RADIUS: [f64; 2] = [0.005, 0.025];
-/// Mass of the ball, kg: from, to.
+/// Range of the ball's mass, kg.
 const MASS: [f64; 2] = [0.05, 0.5];
 /// Greatest error of the point that the eyes follow, in each direction, m.
 const ERROR: f64 = 0.005;
@@ -28,13 +28,13 @@ const SETTLING: u32 = 50;
 const HELD: usize = 100;
 /// Depth below the hand, and distance from it, at which the ball is lost, m.
 const LOST: [f64; 2] = [0.1, 0.5];
-/// Reward of success, and of failure with another sign.
+/// Reward of success; its negative for failure.
 const BONUS: f64 = 100.0;
 /// Weight of the cost of an action.
 const COST: f64 = 40.0;
-/// Steps between two changes of the factors on actions: from, to.
+/// Range of the number of steps between two changes of the factors on actions.
 const JITTER_PERIOD: [f64; 2] = [10.0, 51.0];
-/// Factors on actions: from, to.
+/// Range of the factors on actions.
 const JITTER: [f64; 2] = [0.8, 1.2];
 
 /// Bodies with touch sensors and the distances between them, m.
@@ -172,7 +172,7 @@ impl Catch {
         }
     }
 
-    /// Draws the ball of an episode: place, size, mass, and the error of the eyes.
+    /// Draws the ball of an episode (place, size, mass) and the error of the eyes.
     fn throw(&mut self, scene: &mut TaskScene<'_>) -> Result<(), EnvError> {
         // drawn under `compat: reference`, too, which draws it and does not use it
         let shift = SHIFT.map(|most| scene.rng.uniform_in(-most, most));

@@ -24,7 +24,7 @@ pub struct Outcome {
     pub is_failure: bool,
 }
 
-/// Goals or terms of a wrong shape.
+/// Goals or terms with a wrong shape.
 #[derive(Clone, Debug, Error, PartialEq, Eq)]
 #[error("{what} has {found} values but the task {task:?} needs {rows} rows of {expected}")]
 pub struct GoalError {

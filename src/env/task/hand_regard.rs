@@ -20,7 +20,7 @@ pub(super) struct HandRegard {
     hands: [usize; 2],
     compat: Compat,
     cos_half_angle: f64,
-    /// Steps in which a hand was in view by the rule that the information does not use.
+    /// Steps in which a hand was in view under the rule that the information does not use.
     other: [u64; 4],
 }
 

@@ -34,13 +34,13 @@ pub(super) const NAMES: &[&str] = &[
 const PHASES: usize = 3;
 /// The phase in which the mobile is tied.
 const REINFORCEMENT: usize = 1;
-/// The limbs to one of which the ribbon is tied.
+/// The limbs; the ribbon is tied to one of them.
 const LIMBS: usize = Limb::ALL.len();
 /// A movement begins when the end of a limb is faster than this, in the frame of the hip, m/s.
 const BEGINS: f64 = 0.2;
 /// A movement ends when the end of the limb is slower than this, m/s, or turns back.
 const ENDS: f64 = 0.1;
-/// Ratio of the rates of movements, tied over baseline, that counts as having learned.
+/// Ratio of the rates of movements, tied over baseline, from which he has learned.
 const LEARNED: f64 = 1.5;
 /// Physics steps in which the ribbon reaches its limb and comes to rest.
 const REST: u32 = 400;
@@ -126,7 +126,7 @@ impl Mobile {
         self.memory.steps.min(bounds[phase + 1]).saturating_sub(bounds[phase])
     }
 
-    /// Computes the ratio of the rates of movements of the limb with the ribbon, tied over baseline; 0 while either has no movements.
+    /// Computes the ratio of the rates of movements of the limb with the ribbon, tied over baseline; 0 while either phase has no movements.
     fn ratio(&self) -> f64 {
         let rate = |phase: usize| match self.lasted(phase) {
             0 => 0.0,

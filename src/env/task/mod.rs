@@ -74,7 +74,7 @@ fn spacing(table: &[(&str, f64)]) -> Vec<(String, f64)> {
         .collect()
 }
 
-/// The value of a step.
+/// The evaluation of a step.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct StepReward {
     /// The reward.
@@ -90,7 +90,7 @@ pub struct StepReward {
 pub enum TaskEvent<'a> {
     /// An episode starts: counters are cleared, with space reserved for everything that may come.
     Start,
-    /// A step led to this state.
+    /// A step has led to this state.
     Step(&'a State),
     /// A snapshot was restored: counters are known, poses are not.
     Restored,
@@ -146,7 +146,7 @@ pub trait Task: CloneTask + Debug + Send + Sync {
         scene.restart()
     }
 
-    /// Starts an episode in the current scene, after [`Task::reset`] or where a program has put it, and chooses the desired goal.
+    /// Starts an episode in the current scene, after [`Task::reset`] or after a program has set its state, and chooses the desired goal.
     fn begin(&mut self, scene: &mut TaskScene<'_>, desired: &mut [f64]) {
         let _ = (scene, desired);
     }
@@ -200,8 +200,8 @@ pub trait Task: CloneTask + Debug + Send + Sync {
         let _ = state;
     }
 
-    /// Updates the information. Success, failure and return ([`BehaviorInfo::Task`](crate::env::BehaviorInfo::Task)) are there at the
-    /// start, and follow from [`Task::judge`]. A task with other counters replaces them.
+    /// Updates the information. Success, failure and return ([`BehaviorInfo::Task`](crate::env::BehaviorInfo::Task)) exist from the start and follow
+    /// from [`Task::judge`]. A task with other counters replaces them.
     fn inform(&self, event: TaskEvent<'_>, info: &mut Info) {
         let _ = (event, info);
     }

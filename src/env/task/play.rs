@@ -19,7 +19,7 @@ pub(super) const NAMES: &[&str] = &[
     "holding_time",
     "toys_path",
 ];
-/// Distance from its start from which on a touched toy counts as moved, m.
+/// Distance from its start at which a touched toy counts as moved, m.
 const MOVED: f64 = 0.05;
 
 /// MIMo plays: he touches, holds and moves toys, which are all free bodies that are not his.

@@ -70,7 +70,7 @@ impl Task for Reach {
         scene.restart()
     }
 
-    /// Ten random actions move the arm, then the ball is moved to a random position: x, y, z.
+    /// Ten random actions move the arm. Then the ball is moved to a random position: x, y, z.
     fn reset(&mut self, scene: &mut TaskScene<'_>) -> Result<(), EnvError> {
         random_start(scene, |scene| self.after_step(scene))?;
         let [start, _] = scene.start();

@@ -19,7 +19,7 @@ use crate::spaces::NumpyRng;
 #[derive(Clone, Copy)]
 pub(crate) enum ActionTiming {
     InStep,
-    /// At once, unless `compat: reference` delays actions of resets, too.
+    /// At once, unless `compat: reference` also delays actions of resets.
     InReset,
 }
 
@@ -194,7 +194,7 @@ impl<'a> TaskScene<'a> {
         Ok(self.engine.lend(|engine| engine.forward(self.state))?)
     }
 
-    /// Passes an action, of the length of the action space, to the actuators, and makes physics steps.
+    /// Passes an action, of the length of the action space, to the actuators, and takes physics steps.
     ///
     /// # Errors
     /// The simulation diverged.
@@ -224,13 +224,13 @@ impl<'a> TaskScene<'a> {
         }
     }
 
-    /// Makes physics steps, and updates the actuators before each one except the first. Under `compat: reference`, MIMo 3's actuators
-    /// are updated before the first one, too.
+    /// Takes physics steps, and updates the actuators before each one except the first. Under `compat: reference`, MIMo 3's actuators are also
+    /// updated before the first one.
     pub(crate) fn advance(&mut self, steps: u32) -> Result<(), EnvError> {
         self.watched_advance(steps, &mut |_| {})
     }
 
-    /// Makes physics steps like [`TaskScene::advance`], and shows the state after each to `watch`.
+    /// Takes physics steps like [`TaskScene::advance`], and shows the state after each to `watch`.
     pub(crate) fn watched_advance(&mut self, steps: u32, watch: &mut dyn FnMut(&State)) -> Result<(), EnvError> {
         let first = u32::from(self.config.mimo_version < CHEST || self.config.compat == Compat::Api);
         for k in 0..steps {
@@ -243,7 +243,7 @@ impl<'a> TaskScene<'a> {
         Ok(())
     }
 
-    /// Passes the action 0 to the actuators once, and makes physics steps. As in the Python code, the actuators are not updated between
+    /// Passes the action 0 to the actuators once, and takes physics steps. As in the Python code, the actuators are not updated between
     /// them.
     ///
     /// # Errors
@@ -258,7 +258,7 @@ impl<'a> TaskScene<'a> {
         self.steps(steps)
     }
 
-    /// Makes physics steps. Actuators are not updated.
+    /// Takes physics steps. Actuators are not updated.
     ///
     /// # Errors
     /// The simulation diverged.
@@ -287,7 +287,7 @@ impl<'a> TaskScene<'a> {
         Ok(stepped?)
     }
 
-    /// Locks a joint at an angle, rad, in every episode; with `now` at once, too.
+    /// Locks a joint at an angle, rad, in every episode; with `now`, also at once.
     ///
     /// # Errors
     /// A joint that does not exist or cannot be locked.
@@ -299,9 +299,9 @@ impl<'a> TaskScene<'a> {
         Ok(())
     }
 
-    /// Settles a scene for 100 steps from `qpos0` with the action 0. Muscles keep their initial pull throughout. A MIMo with an age
-    /// starts in the posture in which the scene holds him: with other proportions than the original's, his legs would sink too deep into
-    /// the floor on their way there.
+    /// Settles a scene for 100 steps from `qpos0` with the action 0. Muscles keep their initial pull throughout. A MIMo with an age starts in the
+    /// posture in which the scene holds him. With proportions that differ from the original's, his legs would otherwise sink too deep into the floor
+    /// on their way there.
     ///
     /// # Errors
     /// The simulation diverged.

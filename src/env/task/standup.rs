@@ -162,8 +162,8 @@ pub(super) fn shaken_start(scene: &mut TaskScene<'_>, base: usize) -> Result<(),
     relax(scene, REST)
 }
 
-/// Returns the cost of the controls: 0.01 times the sum of their squares. Controls of muscles are always 1, so there it is the
-/// cost of the actuation model, scaled to as many squares; under `compat: reference` it is constant.
+/// Returns the cost of the controls: 0.01 times the sum of their squares. Controls of muscles are always 1, so for muscles it is the cost of the
+/// actuation model, scaled to the same number of squares; under `compat: reference` it is constant.
 pub(super) fn control_cost(view: &TaskView<'_>, reference: bool) -> f64 {
     let state = view.state;
     if state.muscle_torque.is_empty() || reference {

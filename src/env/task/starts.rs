@@ -1,4 +1,4 @@
-//! Starts of episodes that tasks of the library have in common.
+//! Starts of episodes that several tasks of the library share.
 
 use super::TaskScene;
 use crate::config::Compat;
@@ -24,7 +24,7 @@ pub(super) fn random_start(
     Ok(())
 }
 
-/// Passes the action 0 to the actuators and makes physics steps. Under `compat: reference` actuators are not updated between
+/// Passes the action 0 to the actuators and takes physics steps. Under `compat: reference` actuators are not updated between
 /// them.
 pub(super) fn relax(scene: &mut TaskScene<'_>, steps: u32) -> Result<(), EnvError> {
     if scene.config.compat == Compat::Reference {

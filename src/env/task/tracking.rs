@@ -20,11 +20,11 @@ pub(super) struct HeadTracking {
     head: usize,
     swivel: usize,
     tilt: usize,
-    /// Horizontal angles of the eyes that follow.
+    /// Horizontal angles of the eyes that follow the point.
     eyes: Vec<usize>,
     /// Joints that are held at 0.
     straight: Vec<usize>,
-    /// Whether the distance of the point is that from the height of the eyes.
+    /// Whether the distance to the point is measured from the height of the eyes.
     from_eyes: bool,
 }
 
@@ -35,7 +35,7 @@ pub(super) enum ForgottenJoints {
     None,
     /// The left eye rolls freely: MIMo 2's task `reach`.
     LeftTorsion,
-    /// The right eye looks ahead and is free otherwise, and distances are those from the height of the eyes: MIMo 3's task `reach`.
+    /// The right eye looks ahead and is otherwise free, and distances are measured from the height of the eyes: MIMo 3's task `reach`.
     RightEye,
 }
 

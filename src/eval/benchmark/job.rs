@@ -23,7 +23,7 @@ const MARKS: [u64; 5] = [1_000, 10_000, 100_000, 1_000_000, 10_000_000];
 /// A run of a benchmark: a configuration, a policy and a seed.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BenchmarkJob {
-    /// Its name, which its files have.
+    /// Its name, which its files carry.
     pub name: String,
     stem: String,
     config: Config,
@@ -60,21 +60,21 @@ pub struct RunResult {
     pub score: Option<f64>,
     /// Scores of the episodes that had ended after each given number of steps, by that number.
     pub score_at: BTreeMap<u64, f64>,
-    /// Parts that both hands touch in an episode, mean.
+    /// Mean number of parts that both hands touch in an episode.
     pub parts_per_episode: Option<f64>,
-    /// Return of an episode of a task, mean.
+    /// Mean return of a task's episodes.
     pub mean_return: Option<f64>,
     /// Share of the episodes of a task that end in success.
     pub successes: Option<f64>,
-    /// The score of the evaluation that follows, in which learning policies do what they have learned.
+    /// The score of the following evaluation, in which learning policies apply what they have learned.
     #[serde(default)]
     pub evaluated_score: Option<f64>,
-    /// Parts that both hands touch in an episode of the evaluation, mean.
+    /// Mean number of parts that both hands touch in an episode of the evaluation.
     #[serde(default)]
     pub evaluated_parts: Option<f64>,
     /// The measures of the recorded episodes.
     pub measures: Option<Measures>,
-    /// Steps per second of this run, in one thread, while the machine did other work too.
+    /// Steps per second of this run, in one thread, while the machine may have done other work.
     pub steps_per_second: f64,
 }
 
@@ -151,7 +151,7 @@ impl BenchmarkJob {
         crc32fast::hash(about.as_bytes())
     }
 
-    /// Reads the result of the run, if the folder has it, or runs.
+    /// Reads the result from the folder, if it is there, or performs the run.
     pub(super) fn run_or_read(
         &self,
         dir: &Path,

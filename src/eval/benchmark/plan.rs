@@ -47,11 +47,11 @@ pub struct BenchmarkPlan {
     pub steps: u64,
     /// Number of episodes of each run that are recorded and measured, the first ones.
     pub record: u64,
-    /// Number of episodes of each run after these steps, in which learning policies do what they have learned
+    /// Number of episodes of each run after these steps, in which learning policies apply what they have learned
     /// ([`Policy::settle`](crate::policy::Policy::settle)).
     #[serde(default)]
     pub evaluate: u64,
-    /// The folder of the plan, from which the files of configurations are looked for.
+    /// The folder of the plan, relative to which configuration files are searched for.
     #[serde(skip)]
     pub dir: PathBuf,
 }
@@ -135,7 +135,7 @@ impl BenchmarkPlan {
         Ok(plan)
     }
 
-    /// Returns the number of steps of all runs, if episodes of evaluations have 1,000.
+    /// Returns the number of steps of all runs, assuming 1,000 per evaluation episode.
     pub fn total_steps(&self) -> u64 {
         let runs = (self.configs.len() * self.ages.len() * self.policies.len()) as u64;
         let steps = self.steps.saturating_add(self.evaluate.saturating_mul(1000));
@@ -203,7 +203,7 @@ fn entries(text: &str) -> Result<Vec<PlanEntry>, (u32, String)> {
     Ok(found)
 }
 
-/// Returns the value of a key that has one.
+/// Returns the single value of a key.
 fn single<'v>(key: &str, values: &'v [String]) -> Result<&'v str, String> {
     match values {
         [value] => Ok(value),

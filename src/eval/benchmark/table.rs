@@ -24,7 +24,7 @@ pub struct BenchmarkRow {
     pub metrics: BTreeMap<String, ConfidenceInterval>,
 }
 
-/// Something that is measured in a run.
+/// A quantity that is measured in a run.
 #[derive(Clone, Copy, Debug)]
 pub struct Metric {
     /// Its name in files.
@@ -44,7 +44,7 @@ const fn metric(name: &'static str, heading: &'static str, decimals: usize) -> M
 }
 
 impl Metric {
-    /// Every metric but the scores after numbers of steps, in the order of tables.
+    /// Every metric except the scores after given numbers of steps, in the order of tables.
     pub const ALL: [Self; 15] = [
         metric("score", "score", 3),
         metric("parts_per_episode", "parts per episode", 1),
@@ -124,7 +124,7 @@ fn row(first: &RunResult, group: &[RunResult]) -> BenchmarkRow {
 }
 
 impl BenchmarkRow {
-    /// Returns a metric as tables show it: the mean, then the interval of 95 %.
+    /// Returns a metric as tables show it: the mean, then the 95 % interval.
     pub fn text(&self, metric: &str, decimals: usize) -> Option<String> {
         let ConfidenceInterval { mean, low, high, .. } = *self.metrics.get(metric)?;
         Some(format!("{mean:.decimals$} ({low:.decimals$} to {high:.decimals$})"))
@@ -201,7 +201,7 @@ fn section(out: &mut String, group: &[BenchmarkRow], columns: &[(String, String,
     shown.chunks(WIDTH).for_each(|shown| table(out, group, shown));
 }
 
-/// Appends a table of some columns.
+/// Appends a table with the given columns.
 fn table(out: &mut String, group: &[BenchmarkRow], shown: &[&(String, String, usize)]) {
     let ages = group.iter().any(|row| row.age.is_some());
     let _ = write!(out, "| policy |{}", if ages { " age, months |" } else { "" });

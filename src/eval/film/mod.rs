@@ -29,6 +29,6 @@ pub trait Film {
     /// As [`Film::frame`].
     fn end(&mut self, path: &Path) -> Result<(), FilmError>;
 
-    /// Discards the video that was begun.
+    /// Discards the unfinished video.
     fn discard(&mut self);
 }

@@ -13,7 +13,7 @@ const HIP: [f64; 2] = [118.74, 136.76];
 const SCALE: f64 = 198.2;
 /// Growth of the scale per metre above the hip.
 const PERSPECTIVE: f64 = 0.0593;
-/// A force that is felt, N.
+/// Smallest force that counts as felt, N.
 const FELT: f64 = 1e-7;
 /// Pixels of a point (1/72 inch) of the reference's plot.
 const POINT: f64 = 100.0 / 72.0;
@@ -30,7 +30,7 @@ impl SkinPanel {
         Self { rgb }
     }
 
-    /// Draws the skin of the environment as it feels now; returns `None` if touch is off.
+    /// Draws the skin of the environment with its current forces; returns `None` if touch is off.
     pub fn draw(&mut self, env: &Env) -> Option<&[u8]> {
         let (touch, model, s) = (env.senses().touch()?, env.model(), env.state());
         let hip = s.xpos[model.body("hip")?];

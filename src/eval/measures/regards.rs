@@ -24,7 +24,7 @@ pub(super) fn counted(npz: &Npz) -> Result<Option<PerEyeAndHand<f64>>, NpzError>
 }
 
 /// Returns the shares of the recorded images in which pixels of a hand, with its fingers, lie within 15 degrees of the axis of an eye:
-/// what hides the hand counts. `None` without recorded segmentation.
+/// occlusion is taken into account. `None` without recorded segmentation.
 pub(super) fn seen(npz: &Npz, manifest: &Manifest) -> Result<Option<PerEyeAndHand<f64>>, NpzError> {
     let names = ["eye_right_segmentation", "eye_left_segmentation"];
     let has = |name: &str| npz.arrays().any(|array| array.name == name);

@@ -114,12 +114,12 @@ impl TouchSteps {
         )
     }
 
-    /// Returns in which steps a hand touches the body.
+    /// Returns the steps in which a hand touches the body.
     pub fn any(&self, hand: usize) -> Vec<bool> {
         self.steps.iter().map(|step| !step.regions[hand].is_empty()).collect()
     }
 
-    /// Returns in which steps a hand touches each region that it touches at all.
+    /// Returns, for each region that a hand touches, the steps in which it does.
     pub fn regions(&self, hand: usize) -> BTreeMap<String, Vec<bool>> {
         let of = |region: usize| {
             self.steps

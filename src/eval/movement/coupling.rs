@@ -1,4 +1,4 @@
-//! Coupling of joints: correlation of their velocities at a lag, and how steady their relative phase is.
+//! Coupling of joints: correlation of their velocities at a lag, and steadiness of their relative phase.
 
 use std::collections::BTreeMap;
 
@@ -63,7 +63,7 @@ fn plain(joint: &str) -> &str {
     names.get(joint).copied().unwrap_or(joint)
 }
 
-/// Measures two joints; `None` where one of them does not move.
+/// Measures two joints; `None` if one of them does not move.
 fn coupling(body: &BodyPaths, first: usize, second: usize) -> Option<Coupling> {
     let (a, b) = (centred(&body.velocity[first])?, centred(&body.velocity[second])?);
     let steps = (LONGEST / body.dt).floor() as usize;
@@ -85,7 +85,7 @@ fn coupling(body: &BodyPaths, first: usize, second: usize) -> Option<Coupling> {
     })
 }
 
-/// Returns a series less its mean, of length 1; `None` where it does not move.
+/// Returns a series minus its mean, normalized to length 1; `None` if it does not move.
 fn centred(series: &[f64]) -> Option<Vec<f64>> {
     let n = series.len() as f64;
     let middle = super::mean(series.iter().copied())?;
@@ -93,8 +93,7 @@ fn centred(series: &[f64]) -> Option<Vec<f64>> {
     (square > STILL * STILL * n).then(|| series.iter().map(|v| (v - middle) / square.sqrt()).collect())
 }
 
-/// Returns the length of the mean of the unit vectors of the relative phase, with phases in the plane of angle and velocity, both less
-/// their means and over their deviations.
+/// Returns the length of the mean of the unit vectors of the relative phase, with phases in the plane of standardized angle and velocity.
 fn phase_locking(body: &BodyPaths, first: usize, second: usize) -> Option<f64> {
     let part = |joint: usize| Some((centred(&body.angle[joint])?, centred(&body.velocity[joint])?));
     let ((x1, v1), (x2, v2)) = (part(first)?, part(second)?);

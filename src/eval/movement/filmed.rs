@@ -3,7 +3,7 @@
 use crate::math::Vec3;
 use crate::spaces::NumpyRng;
 
-/// Returns a path at the frames of a camera, by straight lines between steps, with an error of `jitter` m in each coordinate.
+/// Returns a path at the frames of a camera, interpolated linearly between steps, with an error of `jitter` m in each coordinate.
 pub(super) fn film(path: &[Vec3], dt: f64, fps: f64, jitter: f64, rng: &mut NumpyRng) -> Vec<Vec3> {
     let Some(last) = path.len().checked_sub(1) else {
         return Vec::new();

@@ -1,4 +1,4 @@
-//! Movements of the limbs, one by one: how many, how long, how fast, and what the other side does meanwhile.
+//! Individual movements of the limbs: their number, duration and speed, and the other side's movements meanwhile.
 
 use super::paths::BodyPaths;
 use super::{LIMBS, Values, mean, velocities};

@@ -35,7 +35,7 @@ pub enum MovementFrame {
     /// The world: what a fixed camera sees.
     #[default]
     World,
-    /// The hip: without what the trunk does.
+    /// The hip, without the movement of the trunk.
     Hip,
 }
 
@@ -88,7 +88,7 @@ impl Default for MovementOptions {
     }
 }
 
-/// The largest rate of frames, Hz, and the longest window, frames: a typing error should not take hours.
+/// The highest frame rate, Hz, and the longest window, frames, so that a typing error does not take hours.
 const MOST: [f64; 2] = [10_000.0, 1_048_576.0];
 
 impl MovementOptions {
@@ -232,7 +232,7 @@ impl Movement {
     }
 }
 
-/// Measures that are being collected.
+/// Measures during collection.
 #[derive(Debug, Default)]
 struct Values(BTreeMap<String, f64>);
 
@@ -245,7 +245,7 @@ impl Values {
     }
 }
 
-/// Returns the mean; `None` of nothing.
+/// Returns the mean; `None` if there are no values.
 fn mean(values: impl IntoIterator<Item = f64>) -> Option<f64> {
     let (n, sum) = values.into_iter().fold((0_usize, 0.0), |(n, sum), v| (n + 1, sum + v));
     (n > 0).then(|| sum / n as f64)

@@ -48,7 +48,7 @@ impl BodyPaths {
         self.joints.iter().position(|joint| joint == name)
     }
 
-    /// Computes the paths of an episode from its positions, with a body of the age and the sizes that it had.
+    /// Computes the paths of an episode from its positions, with the body's age and sizes of that time.
     pub fn of_episode(record: &Record, episode: u64) -> Result<Self, RecordError> {
         let path = record.path(episode)?;
         let unfit = |reason: &str| RecordError::Unfit {

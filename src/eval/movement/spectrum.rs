@@ -8,9 +8,9 @@ use super::{LIMBS, MovementFrame, MovementOptions, Values, mean, velocities};
 use crate::math::Vec3;
 use crate::spaces::{NumpyRng, fourier};
 
-/// Above this deviation from the line, in natural logarithms, a spectrum has no exponent: that of a wave lies on no line.
+/// Above this deviation from the line, in natural logarithms, a spectrum has no exponent; the spectrum of a wave, for example, is not a line.
 const OFF: f64 = 2.0;
-/// The fewest frequencies that a line is fitted through.
+/// The smallest number of frequencies for fitting a line.
 const FEWEST: usize = 4;
 /// The shortest window of short records, frames.
 const SHORTEST: usize = 16;
@@ -42,8 +42,7 @@ fn largest(n: usize) -> usize {
     n.checked_ilog2().map_or(0, |bits| 1 << bits)
 }
 
-/// Returns minus the slope of the logarithm of the power over that of the frequency, in a band; `None` where the power is 0 or lies on no
-/// line.
+/// Returns minus the slope of the logarithm of the power over that of the frequency, in a band; `None` if the power is 0 or does not follow a line.
 pub(super) fn exponent(velocity: &[Vec3], rate: f64, window: usize, band: [f64; 2]) -> Option<f64> {
     if window < SHORTEST || velocity.len() < window {
         return None;
@@ -79,8 +78,8 @@ pub(super) fn exponent(velocity: &[Vec3], rate: f64, window: usize, band: [f64; 
     (off.sqrt() < OFF).then_some(-slope)
 }
 
-/// Returns the power by frequency, summed over the coordinates, in an arbitrary unit: the mean over windows that overlap by half, each less
-/// its mean and weighted by a Hann window (P. D. Welch, 1967).
+/// Returns the power by frequency, summed over the coordinates, in an arbitrary unit: the mean over windows that overlap by half, each with its mean
+/// removed and weighted by a Hann window (P. D. Welch, 1967).
 fn welch(velocity: &[Vec3], window: usize) -> Vec<f64> {
     let hann: Vec<f64> = (0..window)
         .map(|t| 0.5 - 0.5 * pxfm::f_cos(TAU * t as f64 / window as f64))

@@ -29,7 +29,7 @@ const STILL: f64 = 1e-3;
 /// Length of the patterns of sample entropy, and their tolerance in deviations.
 const PATTERN: usize = 2;
 const TOLERANCE: f64 = 0.2;
-/// Sample entropy takes this many samples at most, from the start: its time grows with their square.
+/// Maximum number of samples for sample entropy, from the start: its time grows with their square.
 const SAMPLES: usize = 4096;
 
 pub(super) fn measure(body: &BodyPaths, options: &MovementOptions, values: &mut Values) {
@@ -66,7 +66,7 @@ pub(super) fn measure(body: &BodyPaths, options: &MovementOptions, values: &mut 
 }
 
 /// Returns the entropy of a series in bins that are equally probable for a normal distribution of its mean and deviation, bits: 4 for
-/// such a series, less for others; `None` where it does not move.
+/// such a series, less for others; `None` if it does not move.
 fn entropy(series: &[f64]) -> Option<f64> {
     let (middle, deviation) = moments(series)?;
     let mut counts = [0_usize; BINS.len() + 1];
@@ -85,7 +85,7 @@ fn moments(series: &[f64]) -> Option<(f64, f64)> {
 }
 
 /// Returns the participation ratio of the covariance of series: (sum of its eigenvalues)^2 over the sum of their squares, 1 to the number
-/// of series; `None` where nothing moves.
+/// of series; `None` if nothing moves.
 fn dimensions(series: &[Vec<f64>]) -> Option<f64> {
     let centred: Vec<Vec<f64>> = series
         .iter()
@@ -109,7 +109,7 @@ fn dimensions(series: &[Vec<f64>]) -> Option<f64> {
 }
 
 /// Returns the sample entropy: minus the logarithm of the share of pairs of patterns of two samples, within 0.2 deviations of each other,
-/// that a third sample continues alike (J. S. Richman and J. R. Moorman, 2000); `None` without such pairs.
+/// that also agree in a third sample (J. S. Richman and J. R. Moorman, 2000); `None` without such pairs.
 fn sample_entropy(series: &[f64]) -> Option<f64> {
     let middle = mean(series.iter().copied())?;
     let deviation = mean(series.iter().map(|v| (v - middle) * (v - middle)))?.sqrt();

@@ -1,4 +1,4 @@
-//! Protocols 2 to 5 to values: the opcodes that logs need.
+//! Executes the opcodes of protocols 2 to 5 that logs need.
 
 use super::objects::{PickleObject, StackItem};
 use super::stack::{OpcodeResult, PickleMachine};
@@ -14,7 +14,7 @@ pub fn from_bytes(bytes: &[u8]) -> Result<Value, PickleError> {
     from_bytes_with(bytes, &Limits::DEFAULT)
 }
 
-/// Reads a pickle as [`from_bytes`] does, within other limits than the default ones.
+/// Reads a pickle as [`from_bytes`] does, within the given limits.
 ///
 /// # Errors
 /// As [`from_bytes`].
@@ -86,7 +86,7 @@ impl PickleMachine<'_> {
         }
     }
 
-    /// Pushes a byte as an integer, and at most 63 more that follow: lists of small numbers are what logs are made of.
+    /// Pushes a byte as an integer, and up to 63 more that follow, because logs consist mostly of lists of small numbers.
     #[inline]
     fn small(&mut self) -> OpcodeResult {
         let [number] = self.array()?;

@@ -72,12 +72,12 @@ impl Dtype {
         whole.then(|| i64::try_from(self.integer(bytes)).ok()).flatten()
     }
 
-    /// Returns how many numbers some bytes hold.
+    /// Returns the number of values in some bytes.
     pub fn count(self, bytes: &[u8]) -> usize {
         bytes.len() / self.size
     }
 
-    /// Decodes an array; `fortran` tells that the first dimension varies fastest.
+    /// Decodes an array; `fortran` means that the first dimension varies fastest.
     pub fn array(self, bytes: &[u8], shape: Vec<usize>, fortran: bool) -> Result<Array, &'static str> {
         if self.big_endian {
             return Err("big-endian numbers are not supported");

@@ -1,11 +1,11 @@
-//! Long lists of records, one at a time: nothing of a record stays in memory once it has been handed out.
+//! Long lists of records, one at a time: a record leaves memory once it has been handed out.
 
 use super::PickleError;
 use super::objects::{PickleObject, StackItem};
 use super::stack::PickleMachine;
 use crate::limits::Limits;
 
-/// The kind of a pickle, apart from the records that were handed out.
+/// The kind of a pickle, without the records that were handed out.
 pub(crate) enum PickleKind {
     /// A list of records.
     List,

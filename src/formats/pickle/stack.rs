@@ -15,14 +15,14 @@ pub(super) type OpcodeResult = Result<(), PickleError>;
 /// Capacity kept in the free lists: entries, and lists or dictionaries.
 const KEPT: [usize; 2] = [64, 4096];
 
-/// Room for the items of short lists and the entries of short dictionaries. Records are many and short.
+/// Capacity for the items of short lists and the entries of short dictionaries. Logs have many short records.
 #[derive(Default)]
 struct SpareLists {
     lists: Vec<Vec<StackItem>>,
     dicts: Vec<Vec<(StackItem, StackItem)>>,
 }
 
-/// Empties a list and keeps its room.
+/// Empties a list and keeps its capacity.
 fn keep<T>(spare: &mut Vec<Vec<T>>, mut list: Vec<T>) {
     if (1..=KEPT[0]).contains(&list.capacity()) && spare.len() < KEPT[1] {
         list.clear();
@@ -78,7 +78,7 @@ impl<'a> PickleMachine<'a> {
         }
     }
 
-    /// Returns the error of the present opcode.
+    /// Returns the error of the current opcode.
     pub fn bad(&self, reason: &'static str) -> PickleError {
         PickleError::Malformed { at: self.op, reason }
     }
@@ -100,7 +100,7 @@ impl<'a> PickleMachine<'a> {
         Ok(out)
     }
 
-    /// Returns the bytes after their length in `N` bytes.
+    /// Returns the bytes that follow their length, which has `N` bytes.
     pub fn sized<const N: usize>(&mut self) -> Result<&'a [u8], PickleError> {
         let length = self
             .array::<N>()?

@@ -1,4 +1,4 @@
-//! Objects of the stack machine -> values.
+//! Converts objects of the stack machine to values.
 
 use std::sync::Arc;
 

@@ -17,8 +17,8 @@ pub fn to_bytes(value: &Value) -> Result<Vec<u8>, PickleError> {
     Ok(writer.out)
 }
 
-/// A list of dictionaries as a pickle that grows, so that their sources need not stay in memory. The bytes are those
-/// of [`to_bytes`] for the whole list, whenever one looks.
+/// A list of dictionaries as a pickle that grows, so that their sources need not stay in memory. At any time, the bytes are those of [`to_bytes`] for
+/// the whole list.
 #[derive(Clone)]
 pub(crate) struct ListWriter {
     writer: PickleWriter,
@@ -29,7 +29,7 @@ pub(crate) struct ListWriter {
 const END: &[u8] = b"e.";
 
 impl ListWriter {
-    /// Begins a list, with room for `bytes` bytes.
+    /// Begins a list, with a capacity of `bytes` bytes.
     pub fn with_capacity(bytes: usize) -> Self {
         let mut writer = PickleWriter::new();
         writer.out.reserve(bytes);
@@ -105,7 +105,7 @@ impl DictWriter<'_> {
     }
 }
 
-/// Number of items that are appended to a list at once, as Python does it; a reader need not hold more.
+/// Number of items that are appended to a list at once, as in Python; a reader need not hold more.
 const BATCH: usize = 1000;
 
 /// Memo indices of NumPy's constructor, its array type and the type `float64`.
@@ -174,7 +174,7 @@ impl PickleWriter {
         }
     }
 
-    /// Writes a key of a dictionary, in full for the first time only.
+    /// Writes a key of a dictionary, in full only the first time.
     fn key(&mut self, key: &str) {
         match self.keys.get(key) {
             Some(&index) => self.get(index),

@@ -30,7 +30,7 @@ pub enum CustomSceneError {
         /// Its name.
         name: String,
     },
-    /// Text between the elements that are added to a scene.
+    /// There is text between the elements that are added to a scene.
     #[error(
         "scene_extra:{line}:{column}: {} stands where no element is, and adds nothing: scene_extra is MJCF itself, as in <geom size=\".1\"/>, \
          not the name of a file; a document of one's own is the key `scene`",
@@ -56,7 +56,7 @@ pub enum CustomSceneError {
         /// The contents of that file.
         what: &'static str,
     },
-    /// An element that no custom scene may have, or not in this form.
+    /// An element is not allowed in a custom scene, or not in this form.
     #[error("{place}: {reason}")]
     At {
         /// Place of the element.

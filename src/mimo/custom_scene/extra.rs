@@ -10,16 +10,16 @@ use crate::mjcf_loader::Location;
 pub(super) const SHOWN: &str = "scene_extra";
 /// Elements of the world.
 const WORLD: [&str; 6] = ["body", "geom", "site", "camera", "light", "frame"];
-/// Elements that a whole document consists of.
+/// Elements of which a whole document consists.
 const ROOTS: [&str; 2] = ["mujoco", "mujocoinclude"];
 
-/// A text of elements as a document that can be included.
+/// A text of elements, converted to a document that can be included.
 pub(super) struct ExtraElements {
     pub document: String,
     inserted: Vec<InsertedText>,
 }
 
-/// Characters that the text does not have.
+/// Characters that were added to the text.
 struct InsertedText {
     /// Line and column of the text that follows them.
     line: usize,
@@ -83,7 +83,7 @@ impl ExtraElements {
     }
 }
 
-/// Refuses text outside of elements, which would add nothing.
+/// Refuses text outside elements, which would add nothing.
 pub(super) fn check(text: &str) -> Result<(), CustomSceneError> {
     let mut reader = Reader::from_str(text);
     let mut depth = 0_usize;
@@ -114,7 +114,7 @@ pub(super) fn check(text: &str) -> Result<(), CustomSceneError> {
     }
 }
 
-/// Lists the top elements by position and name, up to the first text that is not XML.
+/// Lists the top-level elements by position and name, up to the first text that is not XML.
 fn top_elements(text: &str) -> Vec<(usize, String)> {
     let mut reader = Reader::from_str(text);
     let (mut depth, mut found) = (0_usize, Vec::new());

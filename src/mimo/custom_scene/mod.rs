@@ -28,13 +28,13 @@ use crate::config::{Config, Learner, Scene};
 use crate::mjcf_loader::{ErrorKind, LoadError, Location};
 use extra::ExtraElements;
 
-/// Folder of the library's documents, in which a custom scene is read.
+/// Folder of the library's documents, which a custom scene is read as if it were in.
 const FOLDER: &str = "babybench/";
 /// Folders of the library's textures and meshes.
 const BESIDE: [&str; 2] = ["tex/", "toys/"];
 /// The library's settings, which several documents include.
 const SETTINGS: &str = "babybench/settings.xml";
-/// The same under another name: a document may include both [`FILES`] and `base.xml`, and no file twice.
+/// The same under another name, because a document may include both [`FILES`] and `base.xml`, but no file twice.
 const SETTINGS_AGAIN: &str = "mimo_options.xml";
 
 /// The files that a custom scene includes: name, place, and contents.
@@ -61,10 +61,10 @@ enum DocumentSource {
 /// The assets of a custom scene: its files over the library's, which keep their names.
 pub(super) struct CustomScene<A> {
     given: A,
-    /// The embedded assets, for what the given ones lack.
+    /// The embedded assets, for files that the given ones lack.
     library: VersionAssets<EmbeddedAssets>,
     own: DocumentSource,
-    /// Path of the document, as the configuration has it.
+    /// Path of the document, as in the configuration.
     path: String,
     /// The files that depend on the configuration.
     written: Vec<(&'static str, String)>,
@@ -74,11 +74,11 @@ pub(super) struct CustomScene<A> {
     second: bool,
 }
 
-/// Returns the assets of a configuration's scene: `assets` with the documents of its version of MIMo, or for a custom scene ([`Scene::File`]) its files over them, and likewise the
-/// additions to a scene of the library ([`Config::scene_extra`]).
+/// Returns the assets of a configuration's scene: `assets` with the documents of its version of MIMo. The files of a custom scene
+/// ([`Scene::File`]) are laid over them, and so are the additions to a scene of the library ([`Config::scene_extra`]).
 ///
 /// The document is one of `assets`, if they have its path; otherwise it is a file of the system, whose folder then has its textures and
-/// includes, and nothing outside of that folder is read. Documents of the library are found beside them, even if `assets` lack those.
+/// includes, and nothing outside that folder is read. Documents of the library are found beside them, even if `assets` lack those.
 ///
 /// # Errors
 /// A document that does not exist, or has the name of a file of the library.
@@ -90,8 +90,7 @@ pub fn scene_assets(config: &Config, assets: Arc<dyn AssetSource>) -> Result<Arc
     })
 }
 
-/// Returns the assets of a custom scene over some that are borrowed and have the configuration's version of MIMo; `None` if the scene is
-/// one of the library.
+/// Returns the assets of a custom scene over borrowed assets with the configuration's version of MIMo; `None` for a scene of the library.
 #[cfg(feature = "eval")]
 pub(crate) fn open_custom_scene<'a>(
     config: &Config,
@@ -237,7 +236,7 @@ impl<A: AssetSource> CustomScene<A> {
         }
     }
 
-    /// Names files as the user knows them, instead of by their place among the library's.
+    /// Names files as the user knows them, not by their place among the library's files.
     fn localized_load(&self, mut error: LoadError) -> LoadError {
         let shown = |path: &str| {
             let own = path.strip_prefix(FOLDER).filter(|name| !self.library(name));

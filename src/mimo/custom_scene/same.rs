@@ -29,7 +29,7 @@ impl<A: AssetSource> AssetSource for LibraryAssets<'_, A> {
 }
 
 impl<A: AssetSource> CustomScene<A> {
-    /// Checks that the document left MIMo as he is on the bare floor. `model` is what `source` was compiled into, at the age of `config`.
+    /// Checks that the document left MIMo as he is on the bare floor. `model` is compiled from `source`, at the age of `config`.
     pub fn compare(&self, source: &SceneSource<'_>, model: &Model, config: &Config) -> Result<(), SceneError> {
         let plain = Config {
             scene: Scene::Base,
@@ -89,7 +89,7 @@ fn look(model: &Model, geom: usize) -> Option<Material> {
     material.map(|material| Material { texture, ..material })
 }
 
-/// Describes a difference. It is one function for all types and kept apart, because modules of the page contain the code of every call.
+/// Describes a difference. It is one separate function for all types, because the page's modules would otherwise contain its code for every call.
 #[cold]
 #[inline(never)]
 fn differs(part: String, field: &'static str, found: &dyn Debug, expected: &dyn Debug) -> SceneDifference {

@@ -12,7 +12,7 @@ use crate::mimo::version::{MIMO, SECOND_PREFIX, Version};
 const FILE: &str = "other_";
 /// The body that places the second infant in the world.
 const LOCATION: &str = "other_location";
-/// Attributes that name something, or refer to a name, of the infant himself; classes and materials are common to both.
+/// Attributes that name, or refer to, something of the infant himself; both infants share classes and materials.
 const NAMES: [&str; 12] = [
     "name", "joint", "joint1", "joint2", "body1", "body2", "site", "body", "geom1", "geom2", "tendon1", "tendon2",
 ];
@@ -45,12 +45,12 @@ pub(super) fn written(config: &Config) -> [(&'static str, String); 4] {
     ]
 }
 
-/// Returns the file of the library that a file of the second infant is made from.
+/// Returns the library's file from which a file of the second infant is made.
 pub(super) fn original(name: &str) -> Option<&str> {
     name.strip_prefix(FILE)
 }
 
-/// Renames everything in a document of the library. `None` if it is not XML, which the library's documents are.
+/// Renames everything in a document of the library. `None` if it is not XML; the library's documents always are.
 pub(super) fn renamed(document: &[u8]) -> Option<Vec<u8>> {
     let text = std::str::from_utf8(document).ok()?;
     let mut reader = Reader::from_str(text);

@@ -8,18 +8,18 @@ use crate::mimo::document::{document_path, scene_xml};
 use crate::mimo::error::SceneError;
 use crate::mjcf_loader::{Location, Tree, elements};
 
-/// An attribute of a custom scene that changes nothing here.
+/// An attribute of a custom scene that has no effect here.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct UnusedAttribute {
     /// Place of the element.
     pub place: Location,
     /// The attribute.
     pub attribute: String,
-    /// Its meaning, and why it changes nothing.
+    /// Its meaning, and why it has no effect.
     pub meaning: &'static str,
 }
 
-/// Lists the attributes in the files of a custom scene that change nothing here; none for a scene of the library.
+/// Lists the attributes in the files of a custom scene that have no effect here; none for a scene of the library.
 ///
 /// Everything else in a document has an effect, because unknown content is an error.
 ///

@@ -3,8 +3,8 @@
 use super::error::GrowthError;
 use crate::config::{Config, Key, KeyValue};
 
-/// Returns the error of an impossible body. It names each measurement without which the body `works`, or all given measurements if no such
-/// measurement exists.
+/// Returns the error of an impossible body. It names each measurement whose removal makes the body `work`, or all given measurements if there is
+/// none.
 pub(crate) fn blame(config: &Config, age: f64, reason: String, works: impl Fn(&Config) -> bool) -> GrowthError {
     let given: Vec<&Key> = measurements()
         .filter(|key| key.value(config) != KeyValue::None)

@@ -1,4 +1,4 @@
-//! Trunk, head, arms and legs, which both versions of MIMo have in common.
+//! Trunk, head, arms and legs, which both versions of MIMo share.
 
 use super::leg_lengths::{FootLengths, thigh};
 use super::lengths::Lengths;

@@ -38,10 +38,10 @@ const FINGERS: [FingerShape; 4] = [
 /// Lengths of the palm, m.
 struct PalmLengths {
     thickness: f64,
-    /// Half breadth of the thumb's and of the little finger's side.
+    /// Half breadths on the side of the thumb and of the little finger.
     sides: (f64, f64),
     half_length: f64,
-    /// Ratio of the breadth to the base's.
+    /// Ratio of the breadth to that of the base body.
     ratio: f64,
 }
 

@@ -11,7 +11,7 @@ const GRAVITY: f64 = 9.81;
 /// Distance from the palm at which a hand that hangs from a bar carries its share of the weight, m (u).
 pub(super) const GRIP_ARM: f64 = 0.02;
 
-/// The parts of a body with all joints at 0, and what gravity does to them.
+/// The parts of a body with all joints at 0, and the effect of gravity on them.
 pub(super) struct Weights<'m> {
     model: &'m Model,
     state: State,

@@ -4,7 +4,7 @@ use super::leg_lengths::FootLengths;
 use super::lengths::Lengths;
 use super::shapes::{BodyShapes, PartPosition, Side, on_x, on_z};
 
-/// Adds the sites that move with growth. Heels do not follow their ratio to the foot, but lie at the end of the sole, as in the original.
+/// Adds the sites that move with growth. Heels do not keep their ratio to the foot but lie at the end of the sole, as in the original.
 ///
 /// The ears of the original document are 52.5 mm from the middle of the head, those of growth 62.5 mm times its ratio.
 pub(super) fn add(now: &Lengths, base: &Lengths, foot: &FootLengths, out: &mut BodyShapes) {

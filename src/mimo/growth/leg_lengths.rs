@@ -1,10 +1,10 @@
-//! Lengths of legs and feet, which shapes and proportions have in common.
+//! Lengths of legs and feet, which shapes and proportions share.
 
 use super::lengths::Lengths;
 
-/// Lengths in which the feet and the toes of both versions are given.
+/// Lengths from which the feet and the toes of both versions are derived.
 pub(super) struct FootLengths {
-    /// Ratio of the foot's length to the base's.
+    /// Ratio of the foot's length to that of the base body.
     pub ratio: f64,
     /// Half thickness, m.
     pub thickness: f64,

@@ -1,4 +1,4 @@
-//! Body measurements over age, and the lengths that MIMo is built from.
+//! Body measurements over age, and the lengths from which MIMo is built.
 
 use std::f64::consts::TAU;
 
@@ -36,7 +36,7 @@ macro_rules! lengths {
         }
 
         impl Lengths {
-            /// Returns the lengths at an age in months; measurements that are given replace those of the age.
+            /// Returns the lengths at an age in months; given measurements replace those of the age.
             pub fn new(age: f64, given: &Measurements) -> Self {
                 Self {
                     $($name: MeasurementKind::$form.length(given.$name.unwrap_or_else(|| $a * pxfm::f_log(age + $b) + $c)),)*
@@ -69,7 +69,7 @@ lengths! {
 }
 
 impl Lengths {
-    /// Returns the lengths of the 18-month-old whose measurements are behind MIMo's original proportions.
+    /// Returns the lengths of the 18-month-old on whose measurements MIMo's original proportions are based.
     pub fn base() -> Self {
         let measured = Measurements {
             elbow_hand_length: Some(20.7),

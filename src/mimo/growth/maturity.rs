@@ -16,14 +16,14 @@ use crate::mjcf_loader::Draft;
 use crate::model::Model;
 use crate::physics::compile;
 
-/// A strength of MIMo at an age, by both settings of `strength`.
+/// A strength of MIMo at an age, under both settings of `strength`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StrengthRow {
     /// Joint and direction.
     pub name: &'static str,
     /// The torque that the ratios refer to, N m: gravity's, or that of a share of the weight.
     pub gravity: f64,
-    /// Torques by `strength: volume` and by `strength: infant`, N m.
+    /// Torques under `strength: volume` and under `strength: infant`, N m.
     pub torques: [f64; 2],
 }
 
@@ -99,7 +99,7 @@ impl Maturity {
         Ok(made)
     }
 
-    /// Returns the strengths by both settings, as `babybench inspect --age` prints them.
+    /// Returns the strengths under both settings, as printed by `babybench inspect --age`.
     pub fn rows(&self) -> &[StrengthRow] {
         &self.rows
     }
@@ -141,7 +141,7 @@ impl Maturity {
     }
 }
 
-/// The original body, and the body whose weight the strength is for.
+/// The original body, and the body whose weight determines the strength.
 struct Bodies<'m> {
     original: Weights<'m>,
     strong: Weights<'m>,
@@ -173,7 +173,7 @@ impl Bodies<'_> {
             .map_or(0.0, |k| torques(self.model, k)[direction])
     }
 
-    /// Returns the factor of a curve on the torques of the original body; `volume` is that of the part.
+    /// Returns the factor of a curve on the torques of the original body; `volume` is the factor by the volume of the part.
     fn factor(&self, curve: &RatioCurve, volume: f64) -> Result<f64, GrowthError> {
         let [original, strong] = self.gravity(curve)?;
         Ok(match curve.against {
@@ -215,8 +215,8 @@ fn rows(
     Ok(rows)
 }
 
-/// Returns the factors on the springs and dampers of MIMo's joints: the loads of gravity over those of the original body. The joints of
-/// the eyes are left out, because they pass through the centre of what they carry.
+/// Returns the factors on the springs and dampers of MIMo's joints: the loads of gravity over those of the original body. The joints of the eyes are
+/// left out, because they pass through the centre of their load.
 fn springs(original: &Weights, body: &Weights, model: &Model) -> BTreeMap<String, f64> {
     let own = model.jnt_name.iter().filter(|name| name.starts_with(JOINT_PREFIX));
     let factor = |name: &String| {

@@ -1,4 +1,4 @@
-//! MIMo at other ages than that of his original proportions, from birth to 24 months.
+//! MIMo at ages from birth to 24 months, with other than his original proportions.
 //!
 //! Sizes follow 18 measurements of AnthroKids (1977), fitted over age; masses follow volumes at the density of the original
 //! parts, and the strength of a motor or muscle follows the volume of the part that carries it. Joint ranges, stiffness,
@@ -41,7 +41,7 @@ use maturity::{Maturity, without_side};
 use proportions::Stretch;
 use sizes::{Sizes, check, shapes};
 
-/// Half the diameter of an eyeball of the original proportions, m: how far its camera is before its centre.
+/// Radius of an eyeball of the original proportions, m, which is the distance of its camera from its centre.
 const EYEBALL: f64 = 0.01125;
 
 /// The age of a body, in months: that of its proportions, and that of its strength.
@@ -51,7 +51,7 @@ pub struct Growth {
     sizes: Sizes,
     /// Whether it is MIMo 3.
     has_chest: bool,
-    /// Whether servos get their strength by their gears, which scales their angles, too, as in the authors' code.
+    /// Whether servos get their strength from their gears, which also scales their angles, as in the authors' code.
     gears_of_servos: bool,
     /// Whether muscles keep their strength.
     same_muscles: bool,
@@ -61,7 +61,7 @@ pub struct Growth {
 }
 
 impl Growth {
-    /// Returns how a MIMo of some version grows to the `age` of a configuration; `None` if it has none.
+    /// Returns how a version of MIMo grows to the `age` of a configuration; `None` without an age.
     ///
     /// # Errors
     /// An age out of range, measurements that make a part vanish.
@@ -117,7 +117,7 @@ impl Growth {
         Ok(self)
     }
 
-    /// Returns the strength of this age by both settings of `strength`.
+    /// Returns the strength of this age under both settings of `strength`.
     ///
     /// # Errors
     /// Assets that cannot be compiled.

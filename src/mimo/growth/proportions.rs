@@ -8,7 +8,7 @@ use crate::mimo::sources::{Mark, SourcedConstant};
 /// Ages of [`CROWN_RUMP`], months.
 const AGES: [f64; 4] = [0.0, 6.0, 12.0, 24.0];
 
-/// Crown-rump length over length. Birth and 24 months are those of Dutch infants (NL4); 6 and 12 months lie between them.
+/// Crown-rump length over length. The values at birth and 24 months are those of Dutch infants (NL4); those at 6 and 12 months lie between them.
 const CROWN_RUMP: [f64; 4] = [0.692, 0.66, 0.64, 0.604];
 
 /// Factors on the lengths of trunk and legs.

@@ -72,7 +72,7 @@ impl Sizes {
                 let (volume, old) = (grown.volume(), *grown.size);
                 *grown.size = geom.size;
                 ratios.push((body, geom.index, grown.volume() / volume));
-                // only measured: the strength may be of another age than the body
+                // only measured: strength and body may be of different ages
                 *grown.size = old;
             }
         }
@@ -111,7 +111,7 @@ pub(super) fn shapes(version: Version, has_chest: bool, now: &Lengths, base: &Le
     out
 }
 
-/// Checks that every geom has a size; the error names the geom that has none.
+/// Checks that every geom has a size; the error names the geom without one.
 pub(super) fn check(shapes: &BodyShapes) -> Result<(), String> {
     for geom in &shapes.geoms {
         let gone = |s: &f64| !(s.is_finite() && *s >= 0.0);

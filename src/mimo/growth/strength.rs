@@ -24,8 +24,8 @@ pub(super) fn carrier(actuator: &str, version: Version) -> Option<(String, usize
     Some((body, index))
 }
 
-/// Returns the factor on the gear of an actuator of MIMo 2 at any age. The authors' growth gives v2's toes the strength of its big toe,
-/// half of the original body's.
+/// Returns the factor on the gear of an actuator of MIMo 2 at any age. The authors' growth gives v2's toes the strength of its big toe, half of that
+/// of the original body.
 pub(super) fn share(actuator: &str, version: Version) -> f64 {
     match (version, actuator) {
         (Version::V2, "act:left_toes" | "act:right_toes") => 0.5,
@@ -36,7 +36,7 @@ pub(super) fn share(actuator: &str, version: Version) -> f64 {
 /// Index of the sole among the geoms of a foot.
 const SOLE: usize = 1;
 
-/// Bodies without side, the index of the geom among theirs, and the actuators that it carries.
+/// Bodies without a side, the index of the geom in the body, and the actuators that it carries.
 const CARRIERS: [(&str, usize, &[&str]); 28] = [
     ("chest", 0, &["chest_twist", "chest_lean"]),
     ("lower_body", 0, &["hip_bend", "hip_twist", "hip_lean"]),

@@ -10,7 +10,7 @@ pub(crate) trait AttributeField {
     /// Stores a value. A value of another kind, which the tables rule out, changes nothing.
     fn store(&mut self, value: &Value);
 
-    /// Returns how a document would write the content; empty for nothing.
+    /// Returns the content as a document would write it; empty for nothing.
     fn show(&self) -> String;
 }
 
@@ -109,7 +109,7 @@ macro_rules! store_whole {
 }
 store_whole!(usize, i32, i64);
 
-/// Bits, which documents write as whole numbers whose sign is the highest of them.
+/// Bits, which documents write as whole numbers whose sign is the highest bit.
 impl AttributeField for u32 {
     fn store(&mut self, value: &Value) {
         if let Value::Int(value) = value
@@ -124,7 +124,7 @@ impl AttributeField for u32 {
     }
 }
 
-/// A value that need not be given. A negative count, which the tables allow as -1, counts as not given.
+/// An optional value. A negative count, which the tables allow as -1, counts as not given.
 macro_rules! store_optional {
     ($([$($parameter:tt)*] $ty:ty = $empty:expr),* $(,)?) => {$(
         impl<$($parameter)*> AttributeField for Option<$ty> {

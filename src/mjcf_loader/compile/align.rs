@@ -1,11 +1,11 @@
-//! Moves the frame of a free body into its centre of mass and along its principal axes, where the document asks for it.
+//! Moves the frame of a free body to its centre of mass and along its principal axes, if the document requests it.
 
 use super::context::Context;
 use crate::document::{AutoBool, TypedDocument};
 use crate::math::{Quat, Vec3, add, quat_mul, quat_rotate, sub};
 use crate::model::{Arrays, JointType};
 
-/// Aligns a body of the document that has just been compiled as `id`; one with others in it stays as it is, as in MuJoCo.
+/// Aligns a body of the document that has just been compiled as `id`; a body with others in it stays as it is, as in MuJoCo.
 pub(super) fn align(context: &Context, document: &TypedDocument, body: usize, id: usize, arrays: &mut Arrays) {
     let [joint] = document.bodies[body].joints.as_slice() else {
         return;

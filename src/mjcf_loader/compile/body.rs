@@ -132,7 +132,7 @@ fn frame(body: &Body, place: &KeptBody, id: usize, arrays: &mut Arrays) {
     arrays.body_quat.push(place.quat);
 }
 
-/// Compiles the geoms and sites of a body of the document as those of `id`, which it may be fused with; returns its inertia.
+/// Compiles the geoms and sites of a body of the document as those of `id`, with which it may be fused; returns its inertia.
 fn compile_part(
     context: &Context,
     document: &TypedDocument,
@@ -200,7 +200,7 @@ fn weigh(context: &Context, geom: &Geom, body: usize, ids: &Ids, arrays: &mut Ar
     solid
 }
 
-/// Returns mass and inertia of body `own` of the document: explicit, else from its geoms. The world has none.
+/// Returns mass and inertia of body `own` of the document: explicit ones, or else those of its geoms. The world has none.
 fn inertial(context: &Context, body: &Body, own: usize, solids: &[Solid]) -> Result<Solid, LoadError> {
     let compiler = context.compiler(body.at);
     let from_geoms = match compiler.inertiafromgeom {
@@ -264,7 +264,7 @@ fn compile_site(context: &Context, site: &Site, body: usize, ids: &Ids, arrays: 
     Ok(())
 }
 
-/// Scales all masses and inertias so that the bodies weigh `settotalmass` together, if it is given.
+/// Scales all masses and inertias so that the bodies together weigh `settotalmass`, if it is given.
 fn scale_masses(context: &Context, arrays: &mut Arrays) {
     let wanted = context.settings().settotalmass;
     if wanted <= 0.0 {

@@ -1,4 +1,4 @@
-//! Shared by the stages of compilation: names, their ids, errors with places.
+//! Context shared by the stages of compilation: names, their ids, errors with locations.
 
 use std::collections::BTreeMap;
 
@@ -74,7 +74,7 @@ pub(super) struct UserDataSize {
 }
 
 impl UserDataSize {
-    /// Takes the given length, or the length of the longest of `users`.
+    /// Uses the given length, or that of the longest of `users`.
     pub fn new<'a>(attribute: &'static str, given: Option<usize>, users: impl Iterator<Item = &'a Vec<f64>>) -> Self {
         let length = given.unwrap_or_else(|| users.map(Vec::len).max().unwrap_or(0));
         Self { attribute, length }

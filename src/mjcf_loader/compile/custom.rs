@@ -113,7 +113,7 @@ pub(super) fn compile_keys(context: &Context, document: &TypedDocument, arrays: 
     Ok(())
 }
 
-/// Compiles a keyframe of attached or copied bodies. Values that it does not give are those of `qpos0`.
+/// Compiles a keyframe of attached or copied bodies. Missing values are those of `qpos0`.
 fn moved_key(
     context: &Context,
     key: &AttachedKeyframe,
@@ -161,7 +161,7 @@ fn moved_key(
     compile_key(context, &whole, arrays)
 }
 
-/// Iterates over the poses of mocap bodies as the document has them.
+/// Iterates over the poses of mocap bodies in the document.
 fn mocap_poses(arrays: &Arrays) -> impl Iterator<Item = (Vec3, Quat)> {
     let moved = (0..arrays.nbody()).filter(|&b| arrays.body_mocapid[b].is_some());
     moved.map(|b| (arrays.body_pos[b], arrays.body_quat[b]))

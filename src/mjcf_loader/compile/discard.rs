@@ -18,8 +18,8 @@ const MESH: &str =
 const SHIFTED: &str = "discardvisual=\"true\" leaves out geoms in front of the one to which this sensor refers, of which MuJoCo loses count: \
      refer to a site or a body, or leave discardvisual out";
 
-/// Marks what a document leaves out as MuJoCo 3.3.0 does with `discardvisual`: textures, materials, and geoms that collide by no mask and that
-/// nothing names. Such geoms still weigh.
+/// Marks the elements that MuJoCo 3.3.0 leaves out with `discardvisual`: textures, materials, and geoms without collision masks that no element
+/// names. Such geoms still have mass.
 pub(crate) fn leave_out(tree: &Tree, document: &mut TypedDocument) -> Result<(), LoadError> {
     if !document.compilers[0].discardvisual {
         return Ok(());
@@ -58,7 +58,7 @@ pub(crate) fn leave_out(tree: &Tree, document: &mut TypedDocument) -> Result<(),
     check_references(tree, document)
 }
 
-/// Returns the names of geoms that MuJoCo keeps because something names them: pairs, tendons, tuples, and sensors of them.
+/// Returns the names of geoms that MuJoCo keeps because other elements name them: pairs, tendons, tuples, and sensors.
 fn named(document: &TypedDocument) -> BTreeSet<String> {
     let pairs = document.pairs.iter().flat_map(|pair| [&pair.geom1, &pair.geom2]);
     let along = document.tendons.iter().flat_map(|tendon| &tendon.path);
@@ -78,7 +78,7 @@ fn named(document: &TypedDocument) -> BTreeSet<String> {
     order::set(names.chain(sensed).filter(|name| !name.is_empty()).cloned())
 }
 
-/// Refuses sensors whose reference is a geom that is left out, or one after it.
+/// Refuses sensors whose reference is a geom that is left out, or a later geom.
 fn check_references(tree: &Tree, document: &TypedDocument) -> Result<(), LoadError> {
     let all = document.bodies.iter().flat_map(|body| &body.geoms);
     let before: Vec<&String> = all.take_while(|geom| !geom.left_out).map(|geom| &geom.name).collect();

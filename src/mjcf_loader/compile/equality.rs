@@ -49,7 +49,7 @@ struct Scope<'a> {
 /// The two bodies or sites that a connection or a weld holds together.
 enum ConnectedBodies {
     Bodies([usize; 2]),
-    /// Sites, and the bodies that they are on.
+    /// Sites and their bodies.
     Sites([usize; 2], [usize; 2]),
 }
 
@@ -131,7 +131,7 @@ impl Scope<'_> {
         sites.map(|site| self.arrays.site_pos[site])
     }
 
-    /// Finds the two bodies or sites. `posed` tells whether a relative pose of bodies is given.
+    /// Finds the two bodies or sites. `posed` is whether a relative pose of bodies is given.
     fn pair(&self, ends: &Ends, posed: bool) -> Result<ConnectedBodies, LoadError> {
         let (context, at) = (self.context, self.at);
         let of_bodies = ends.body1.is_some() || ends.body2.is_some() || ends.anchor.is_some() || posed;

@@ -1,4 +1,4 @@
-//! Coefficients of the forces of a medium on a geom by the ellipsoid model.
+//! Coefficients of a medium's forces on a geom, by the ellipsoid model.
 
 use std::f64::consts::PI;
 
@@ -6,7 +6,7 @@ use super::geometry::EPS;
 use crate::math::Vec3;
 use crate::model::GeomType;
 
-/// Weights of the rule of Gauss and Kronrod with 15 points on the unit interval, in the digits that MuJoCo has.
+/// Weights of the Gauss-Kronrod rule with 15 points on the unit interval, with MuJoCo's digits.
 const WEIGHTS: [f64; 15] = [
     0.01146766, 0.03154605, 0.05239501, 0.07032663, 0.08450236, 0.09517529, 0.10221647, 0.10474107, 0.10221647,
     0.09517529, 0.08450236, 0.07032663, 0.05239501, 0.03154605, 0.01146766,
@@ -62,7 +62,7 @@ fn resistance([x, y, z]: Vec3) -> f64 {
     sum * x2
 }
 
-/// Returns MuJoCo's `geom_fluid` of a geom: a mark that it has the ellipsoid model, its coefficients, and the volumes and moments of the
+/// Returns MuJoCo's `geom_fluid` of a geom: a flag for the ellipsoid model, its coefficients, and the volumes and moments of the
 /// medium that move with it.
 pub(super) fn fluid(kind: GeomType, size: &Vec3, coef: [f64; 5]) -> [f64; 12] {
     let [x, y, z] = match kind {

@@ -1,4 +1,4 @@
-//! Fuses bodies without joints with their parents, if the document asks for it (`<compiler fusestatic>`).
+//! Fuses bodies without joints with their parents, if the document requests it (`<compiler fusestatic>`).
 
 use super::context::Context;
 use super::geometry::{Solid, merge};

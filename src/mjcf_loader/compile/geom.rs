@@ -41,8 +41,7 @@ pub(super) fn place(
     Ok((pos, quat, size))
 }
 
-/// Checks that the entries of a size that the shape uses are positive; the extent of a plane may be zero, that is,
-/// infinite.
+/// Checks that the entries of a size that the shape uses are positive; the extent of a plane may be zero, which means infinite.
 pub(super) fn check_size(context: &Context, at: usize, kind: GeomType, size: &Vec3) -> Result<(), LoadError> {
     let first = if kind == GeomType::Plane { 2 } else { 0 };
     let count = size_count(kind);
@@ -151,7 +150,7 @@ fn solid(context: &Context, geom: &Geom, extent: &Extent, (pos, quat): (Vec3, Qu
 struct Extent {
     aabb: [f64; 6],
     volume: f64,
-    /// The size by which inertia is computed.
+    /// The size from which inertia is computed.
     inertia_box: Vec3,
     /// Radius of its bounding sphere, if that does not follow from its size.
     radius: Option<f64>,

@@ -11,7 +11,7 @@ use crate::document::{Compiler, Orientation};
 /// Greatest coordinate (MuJoCo's `mjMAXVAL`).
 const MAXVAL: f64 = 1e10;
 
-/// Below this the compiler takes lengths, volumes and eigenvalues for zero.
+/// Below this, the compiler treats lengths, volumes and eigenvalues as zero.
 pub(super) const EPS: f64 = 1e-14;
 
 /// Normalises by division; (nearly) zero or unit vectors stay as they are. Returns the old length, 0 if tiny.
@@ -166,7 +166,7 @@ pub(super) fn size_count(kind: GeomType) -> usize {
     }
 }
 
-/// Computes the volume of a shape, m^3; 0 for planes, and for meshes, which know theirs.
+/// Computes the volume of a shape, m^3; 0 for planes, and for meshes, which store their own.
 pub(crate) fn volume(kind: GeomType, size: &Vec3) -> f64 {
     let [a, b, c] = *size;
     match kind {

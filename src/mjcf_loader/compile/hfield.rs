@@ -10,8 +10,7 @@ use crate::limits::Limits;
 use crate::mesh::HField;
 use crate::model;
 
-/// Compiles the height fields, whose files are looked up in `source`. Their heights count together towards the limit on
-/// elements of meshes.
+/// Compiles the height fields, whose files are looked up in `source`. Their heights together count towards the limit on mesh elements.
 pub(super) fn compile_hfields(
     context: &Context,
     document: &TypedDocument,

@@ -10,7 +10,7 @@ use crate::joint::Joint;
 use crate::math::{QUAT_ID, Vec3};
 use crate::model::{Arrays, JointType};
 
-/// Compiles the joints of a body. `last` is the last degree of freedom that moves its parent; returns that of the body itself.
+/// Compiles the joints of a body. `last` is the last degree of freedom that moves its parent. Returns the last one that moves the body itself.
 pub(super) fn compile_joints(
     context: &Context,
     body: &Body,
@@ -144,7 +144,7 @@ fn compile_joint(
     Ok(())
 }
 
-/// Adds the coordinates of a joint at `qpos0`, and at rest of its spring.
+/// Adds the coordinates of a joint at `qpos0`, and where its spring is at rest.
 fn reference(joint: &Joint, body: usize, angle: impl Fn(f64) -> f64, arrays: &mut Arrays) {
     match joint.kind {
         JointType::Free => {

@@ -1,4 +1,4 @@
-//! Typed document -> [`Arrays`]: names become ids, angles radians, shapes masses.
+//! Turns the typed document into [`Arrays`]: names become ids, angles become radians, shapes become masses.
 
 mod actuator;
 mod align;

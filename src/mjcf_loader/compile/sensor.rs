@@ -101,7 +101,7 @@ fn sensed(
     Ok((object, NOTHING))
 }
 
-/// Finds the joint of a sensor, which has a limit if the sensor is about that, and else the kind that it measures.
+/// Finds the joint of a sensor. It must have a limit if the sensor measures limits, and otherwise the kind that the sensor measures.
 fn joint(context: &Context, sensor: &Sensor, name: &str, ids: &Ids, arrays: &Arrays) -> Result<usize, LoadError> {
     use SensorType::{BallAngVel, BallQuat, JointLimitFrc, JointLimitPos, JointLimitVel};
     let (at, any) = (sensor.at, ids.joint.find(context.tree, sensor.at, "joint", name)?);
@@ -159,7 +159,7 @@ fn any(context: &Context, at: usize, kind: ObjType, name: &str, ids: &Ids) -> Re
     names.find(context.tree, at, "objname", name)
 }
 
-/// Finds the two geoms, or bodies with geoms, that a sensor is between.
+/// Finds the two geoms, or bodies with geoms, between which a sensor measures.
 fn two(
     context: &Context,
     at: usize,

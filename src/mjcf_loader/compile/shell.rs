@@ -1,11 +1,11 @@
-//! Shells: shapes of which only the surface has mass, by MuJoCo 3.3.0's formulas.
+//! Shells: shapes with mass only on the surface, by MuJoCo 3.3.0's formulas.
 
 use std::f64::consts::PI;
 
 use crate::math::Vec3;
 use crate::model::GeomType;
 
-/// Computes the area of a shape, m^2: of an ellipsoid by Thomsen's approximation; 0 for planes.
+/// Computes the area of a shape, m^2, for an ellipsoid by Thomsen's approximation; 0 for planes.
 pub(super) fn area(kind: GeomType, size: &Vec3) -> f64 {
     let [a, b, c] = *size;
     match kind {

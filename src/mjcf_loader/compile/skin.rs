@@ -21,8 +21,8 @@ const VERTICES: &str = "vertid names a vertex that the skin does not have";
 const FINITE: &str = "a number of the skin is not finite";
 const TOTAL: &str = "each vertex of a skin needs bones whose vertweight is above 0 in total";
 
-/// Compiles all skins. Their files are looked up in `source`; their vertices, texture coordinates, faces and weights count together
-/// towards the limit on elements of meshes.
+/// Compiles all skins. Their files are looked up in `source`; their vertices, texture coordinates, faces and weights together count towards the limit
+/// on mesh elements.
 pub(super) fn compile_skins(
     context: &Context,
     document: &TypedDocument,
@@ -149,7 +149,7 @@ fn check(mut skin: SkinFile) -> Result<SkinFile, &'static str> {
     Ok(skin)
 }
 
-/// Returns a bone with its body, its orientation scaled to a unit quaternion; of zeros MuJoCo makes no other, either.
+/// Returns a bone with its body, its orientation scaled to a unit quaternion; as in MuJoCo, a quaternion of zeros stays.
 fn compiled((body, bone): (usize, BoneFile)) -> SkinBone {
     let quat = bone.bindquat.map(f64::from);
     let norm = quat.iter().map(|x| x * x).sum::<f64>().sqrt();

@@ -8,7 +8,7 @@ use crate::model::{self, Builtin, TextureType};
 use crate::settings::single;
 use crate::surface;
 
-/// Compiles a texture. Its images are looked up in `source` and checked, and not decoded.
+/// Compiles a texture. Its images are looked up in `source` and checked, but not decoded.
 pub(super) fn compile_texture(
     context: &Context,
     texture: &surface::Texture,
@@ -62,7 +62,7 @@ pub(super) fn compile_texture(
     })
 }
 
-/// Returns the height of a pattern, pixels: of a cube it has the six faces.
+/// Returns the height of a pattern, pixels; that of a cube includes the six faces.
 fn height(texture: &surface::Texture) -> usize {
     match texture.kind {
         TextureType::Flat2d => texture.height,
@@ -70,7 +70,7 @@ fn height(texture: &surface::Texture) -> usize {
     }
 }
 
-/// The most numbers of a texture in MuJoCo.
+/// Maximum number of values of a texture in MuJoCo.
 const MOST_NUMBERS: usize = i32::MAX as usize;
 
 /// Checks the images of a texture, so that it can be drawn: their format, and their sizes where it is a cube.
@@ -111,7 +111,7 @@ fn check_images(
     Ok(())
 }
 
-/// Checks an image; returns its width and height, pixels, where the source has it.
+/// Checks an image; returns its width and height, pixels, if the source has it.
 fn image_size(
     context: &Context,
     texture: &surface::Texture,
@@ -145,7 +145,7 @@ fn image_size(
 const ONLY_PNG: &str =
     "textures are read from PNG pictures: convert it, and let its name end with .png or content_type be image/png";
 
-/// Returns the numbers of a pixel, where MuJoCo 3.3.0 draws them as what they are.
+/// Returns the number of values of a pixel, if MuJoCo 3.3.0 draws them with their meaning.
 fn channels(texture: &surface::Texture) -> Result<usize, &'static str> {
     let flat = texture.kind == TextureType::Flat2d;
     match (texture.channels, texture.builtin != Builtin::None) {
@@ -163,7 +163,7 @@ const CHANNELS: &str =
 const PACKED: &str = "MuJoCo 3.3.0 scrambles a flat pattern of four channels: leave nchannel out";
 const FACES: &str = "MuJoCo 3.3.0 scrambles images of four channels on a cube: leave nchannel out";
 
-/// The most squares of a grid.
+/// Maximum number of squares of a grid.
 const SQUARES: usize = 12;
 
 /// Returns the rows and columns of the grid of a cube's image, and the face of each square.

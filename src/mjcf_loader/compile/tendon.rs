@@ -6,7 +6,7 @@ use crate::model::{Arrays, GeomType, Wrap};
 use crate::relation::{Tendon, TendonElements};
 use crate::settings::single;
 
-/// MuJoCo takes such a tendon, but its length depends on both coefficients and its force only on the last.
+/// MuJoCo accepts such a tendon, but its length depends on both coefficients and its force only on the last.
 const JOINT_TWICE: &str = "the tendon names this joint twice";
 const NO_JOINTS: &str = "the tendon has no joints";
 const SHORT: &str = "a spatial tendon runs along two sites or more";

@@ -50,7 +50,7 @@ const COPIED: [(Kind, &str); 6] = [
 ];
 
 impl Document {
-    /// Copies a body of another document, with all in it, into a body, a frame or the world of this one, as MuJoCo's `<attach>` does. The source
+    /// Copies a body of another document, with its contents, into a body, a frame or the world of this one, as MuJoCo's `<attach>` does. The source
     /// may also be a frame, or the world, whose contents come as a new frame. Returns the copy.
     ///
     /// With the body come its default classes, all assets, and the contact pairs, excludes, tendons, equality constraints, actuators and
@@ -151,7 +151,7 @@ impl Document {
         Ok(new)
     }
 
-    /// Returns the kinds and names of a body and all in it.
+    /// Returns the kinds and names of a body and its contents.
     fn names_below(&self, body: usize, naming: Naming) -> Result<BTreeSet<(Kind, String)>, EditError> {
         let mut names = BTreeSet::new();
         let mut open = match self.nodes[body].parent {
@@ -185,7 +185,7 @@ impl Document {
         Ok(names)
     }
 
-    /// Returns what an element, and the parts of it, refer to.
+    /// Returns the references of an element and its parts.
     fn all_references(&self, at: usize) -> Vec<(Kind, &str)> {
         let node = &self.nodes[at];
         let parts = std::iter::once(node).chain(node.children.iter().map(|&at| &self.nodes[at]));
@@ -196,8 +196,8 @@ impl Document {
             .collect()
     }
 
-    /// Checks an element of another document that is not copied: MuJoCo 3.3.0 looks for what is missing under its new name, and where
-    /// something else of the element is copied, as it is written. It must find nothing in this document by chance.
+    /// Checks an element of another document that is not copied. MuJoCo 3.3.0 looks for the missing reference under its new name, and also as written
+    /// if another reference of the element is copied. It must not find anything in this document by chance.
     fn check_absent(
         &self,
         from: &Document,
@@ -290,7 +290,7 @@ impl Document {
         Ok(())
     }
 
-    /// Copies an element of another document with all in it, under the names that it has here.
+    /// Copies an element of another document with its contents, under its names here.
     pub(super) fn copy(&mut self, from: &Document, at: usize, parent: usize, naming: Naming, classes: bool) -> usize {
         let first = self.push(parent, from.nodes[at].rule, usize::MAX);
         let mut open = vec![(at, first)];
@@ -327,7 +327,7 @@ impl Document {
         first
     }
 
-    /// Returns an element with all in it as text.
+    /// Returns an element with its contents as text.
     pub(super) fn written(&self, at: usize) -> String {
         let node = &self.nodes[at];
         let mut attributes: Vec<String> = node

@@ -74,8 +74,8 @@ impl Document {
         }
     }
 
-    /// Sets MJCF's defaults in a class for everything that the main class sets and it does not, because it does not derive from the
-    /// main class.
+    /// Sets MJCF's defaults in a class for everything that the main class sets and this class does not, because it does not derive from the main
+    /// class.
     fn turn_back(&mut self, class: usize) -> Result<(), EditError> {
         let said: Vec<usize> = self.all_main().flat_map(|at| self.nodes[at].children.clone()).collect();
         for at in said {

@@ -1,4 +1,4 @@
-//! The tree of elements, and what programs do with single elements.
+//! The tree of elements, and operations on single elements.
 
 use std::fmt;
 
@@ -15,7 +15,7 @@ use crate::text::nearest;
 #[derive(Clone)]
 pub(super) struct ElementNode {
     pub rule: &'static Rule,
-    /// Whether it stands in a default class.
+    /// Whether it is in a default class.
     pub in_class: bool,
     pub parent: Option<usize>,
     pub children: Vec<usize>,
@@ -151,7 +151,7 @@ impl Document {
         self.node(id).map(|node| node.rule.name)
     }
 
-    /// Returns the element that an element stands in; `None` for the root.
+    /// Returns the parent of an element; `None` for the root.
     ///
     /// # Errors
     /// [`EditError::NoElement`]
@@ -159,7 +159,7 @@ impl Document {
         self.node(id).map(|node| node.parent.map(ElementId))
     }
 
-    /// Returns the elements in an element, in order.
+    /// Returns the children of an element, in order.
     ///
     /// # Errors
     /// [`EditError::NoElement`]
@@ -168,7 +168,7 @@ impl Document {
             .map(|node| node.children.iter().copied().map(ElementId).collect())
     }
 
-    /// Returns the attributes that are given, with their text.
+    /// Returns the given attributes, with their text.
     ///
     /// # Errors
     /// [`EditError::NoElement`]
@@ -177,7 +177,7 @@ impl Document {
             .map(|node| node.attributes.iter().map(|(name, text)| (*name, text.as_str())))
     }
 
-    /// Returns the text of an attribute, if it is given. [`Document::value`] follows default classes, too.
+    /// Returns the text of an attribute, if it is given. [`Document::value`] also follows default classes.
     ///
     /// # Errors
     /// [`EditError::NoElement`]; [`EditError::UnknownAttribute`]: the element cannot have it.
@@ -227,7 +227,7 @@ impl Document {
         self.insert(parent, element, usize::MAX)
     }
 
-    /// Adds an element before the one at `index` among those in another.
+    /// Adds an element before the child at `index` of another element.
     ///
     /// # Errors
     /// As [`Document::add`].

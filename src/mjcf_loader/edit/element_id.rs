@@ -1,4 +1,4 @@
-//! Names of elements in a program.
+//! Identifiers of elements in a program.
 
 use std::fmt;
 
@@ -7,7 +7,7 @@ use std::fmt;
 pub struct ElementId(pub(super) usize);
 
 impl ElementId {
-    /// Returns a number that tells the elements of a document apart.
+    /// Returns a number that identifies the element in its document.
     #[must_use]
     pub fn index(self) -> usize {
         self.0

@@ -12,8 +12,8 @@ use crate::schema::{DEFAULT, Element};
 use crate::table::Table;
 
 impl Document {
-    /// Turns an actuator of another kind, such as `position`, into an equivalent `general` one that writes out all values. MuJoCo has
-    /// only these once a document is read.
+    /// Turns an actuator of another kind, such as `position`, into an equivalent `general` one that writes out all values. MuJoCo keeps only such
+    /// actuators once a document is read.
     ///
     /// # Errors
     /// [`EditError::NoElement`]; [`EditError::UnknownClass`]; [`EditError::Value`]: its attributes contradict each other, or

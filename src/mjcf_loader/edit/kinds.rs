@@ -7,7 +7,7 @@ use crate::schema::DEFAULT;
 /// Defines the kinds, with their names in MJCF.
 macro_rules! kinds {
     ($($kind:ident $name:literal $what:literal,)*) => {
-        /// A kind of element. Names of elements of a kind differ.
+        /// A kind of element. Elements of a kind have different names.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
         #[non_exhaustive]
         pub enum Kind {$(
@@ -68,7 +68,7 @@ impl Kind {
     }
 }
 
-/// Returns the kind of elements that a reference to a kind of object names.
+/// Returns the kind of element for the kind of object in a reference.
 fn object(kind: &str) -> Option<Kind> {
     match kind {
         "xbody" => Some(Kind::Body),
@@ -106,7 +106,7 @@ pub(super) fn references(node: &ElementNode) -> impl Iterator<Item = (Kind, &'st
     named.filter_map(|(attribute, text)| Some((referred(node, attribute)?, *attribute, text.as_str())))
 }
 
-/// Returns whether an element has no meaning without the element that it names: a constraint, a tendon, an actuator, a sensor or a part
+/// Returns whether an element is meaningless without the element that it names: a constraint, a tendon, an actuator, a sensor or a part
 /// of one, but not a geom without its material.
 pub(super) fn loses_meaning(document: &Document, at: usize) -> bool {
     let mut up = document.nodes[at].parent;

@@ -1,4 +1,4 @@
-//! Names of files, for elements that come from other folders.
+//! File names, for elements that come from other folders.
 
 use super::document::{Document, ElementNode};
 use crate::assets::{AssetSource, directory, is_absolute};
@@ -15,7 +15,7 @@ const FILES: [&str; 7] = [
     "fileback",
 ];
 
-/// Returns the settings of `compiler` that say in which folder an element's files are; the last that is given counts.
+/// Returns the settings of `compiler` for the folder of an element's files; the last one given counts.
 fn folders(element: &str) -> Option<[&'static str; 2]> {
     match element {
         "texture" => Some(["assetdir", "texturedir"]),
@@ -76,7 +76,7 @@ pub(super) fn rebase(node: &mut ElementNode, tree: &Tree, at: usize, source: &dy
     }
 }
 
-/// The last text of several, or none.
+/// The last of several texts, if any.
 trait LastText<'a>: Iterator<Item = &'a str> + Sized {
     fn next_back_or_empty(self) -> &'a str {
         self.last().unwrap_or_default()
@@ -95,7 +95,7 @@ fn joined(dir: &str, folder: &str) -> String {
     }
 }
 
-/// Returns how a document that looks for files in `folder` names the file at `path`.
+/// Returns the name of the file at `path` in a document that looks for files in `folder`.
 pub(super) fn relative(folder: &str, path: &str) -> String {
     if is_absolute(path) {
         return path.to_owned();
@@ -115,7 +115,7 @@ impl Document {
         Some(joined(self.folder(), folder))
     }
 
-    /// Returns the files of an element of another document as this one names them.
+    /// Returns the files of another document's element under their names in this document.
     pub(super) fn renamed_files(&self, from: &Document, node: &ElementNode) -> Vec<(&'static str, String)> {
         let (Some(here), Some(there)) = (self.files_in(node.rule.name), from.files_in(node.rule.name)) else {
             return Vec::new();

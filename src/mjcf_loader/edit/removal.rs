@@ -1,4 +1,4 @@
-//! Elements taken out of a document, and what refers to them.
+//! Removal of elements and of the elements that refer to them.
 
 use super::document::{Document, ElementNode, ROOT};
 use super::element_id::ElementId;
@@ -6,8 +6,8 @@ use super::error::EditError;
 use super::kinds::{Kind, loses_meaning, references};
 
 impl Document {
-    /// Removes an element with all in it, and what refers to any of that by name: the sensor of a site that is removed, the actuator of
-    /// its joint. Returns the elements that were removed because they referred to others.
+    /// Removes an element with its contents, and everything that refers to them by name, such as the sensor of a removed site or the actuator of a
+    /// joint. Returns the elements that were removed because they referred to others.
     ///
     /// # Errors
     /// [`EditError::NoElement`]; [`EditError::Needed`]: the root and the world stay.
@@ -38,8 +38,8 @@ impl Document {
         Ok(referring)
     }
 
-    /// Removes an element with all in it. What refers to that by name stays, and is an error when the document is compiled, unless another
-    /// element gets the name.
+    /// Removes an element with its contents. References to them by name stay, and are errors when the document is compiled, unless another element
+    /// gets the name.
     ///
     /// # Errors
     /// As [`Document::remove`].

@@ -1,4 +1,4 @@
-//! Settings of `compiler`, which decide what the numbers of a document mean.
+//! Settings of `compiler`, which decide the meaning of a document's numbers.
 
 use super::document::Document;
 use super::error::{EditError, SettingsConflict};
@@ -18,7 +18,7 @@ const OF_ELEMENTS: [&str; 8] = [
 ];
 
 impl Document {
-    /// Returns a setting of `compiler`, if it is given; the last counts.
+    /// Returns a setting of `compiler`, if it is given; the last one counts.
     pub(super) fn compiler(&self, name: &str) -> Option<&str> {
         let sections = self.nodes[0].children.iter().map(|&at| &self.nodes[at]);
         let sections = sections.filter(|node| node.rule.name == "compiler");
@@ -35,7 +35,7 @@ impl Document {
         self.compiler("angle") != Some("radian")
     }
 
-    /// Checks that elements of another document mean the same here. Units of angles are converted, and need not be alike.
+    /// Checks that elements of another document mean the same here. Units of angles are converted and may differ.
     pub(super) fn check_settings(&self, other: &Document) -> Result<(), EditError> {
         for attribute in OF_ELEMENTS {
             let (own, theirs) = (

@@ -1,4 +1,4 @@
-//! Angles in radians in place of degrees.
+//! Angles in radians instead of degrees.
 
 use std::f64::consts::PI;
 
@@ -83,7 +83,7 @@ impl Document {
         Ok(matches!(self.value(joint, "type")?.as_str(), "hinge" | "ball"))
     }
 
-    /// Returns an angle of a joint in radians; `None` for one that is 0, or a range that does not limit, which no unit has.
+    /// Returns an angle of a joint in radians; `None` for 0 and for a range without effect, which have no unit.
     fn in_radians(&self, joint: ElementId, name: &str) -> Result<Option<String>, EditError> {
         let given = numbers(&self.value(joint, name)?);
         if given.iter().all(|value| *value == 0.0) {

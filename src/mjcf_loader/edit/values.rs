@@ -35,7 +35,7 @@ impl Document {
         }
     }
 
-    /// Returns the value of an attribute that the element does not give.
+    /// Returns the value of an attribute that is not given in the element.
     fn value_of_class(&self, id: ElementId, name: &str) -> Result<String, EditError> {
         let node = self.node(id)?;
         let attr = attr_of(node, name)?;
@@ -68,7 +68,7 @@ impl Document {
         self.childclass_around(self.nodes[at].parent).unwrap_or(MAIN)
     }
 
-    /// Returns the class for what is in a body or a frame, or in those around it.
+    /// Returns the class for the contents of a body or a frame, from it or those around it.
     pub(super) fn childclass_around(&self, at: Option<usize>) -> Option<&str> {
         let mut up = at;
         while let Some(at) = up {
@@ -90,7 +90,7 @@ impl Document {
         }
     }
 
-    /// Returns the class that a class is derived from, for an element of the first.
+    /// Returns the class from which a class is derived, for an element of the latter.
     fn class_around(&self, at: usize) -> Option<usize> {
         self.nodes[at].parent.and_then(|class| self.nodes[class].parent)
     }
@@ -103,7 +103,7 @@ impl Document {
         }
     }
 
-    /// Returns what a class, or one that it is derived from, gives for an attribute of an element.
+    /// Returns the value that a class, or one of its ancestors, gives for an attribute of an element.
     pub(super) fn inherited(&self, class: usize, element: &str, name: &str) -> Option<String> {
         let mut up = Some(class);
         while let Some(at) = up {

@@ -19,7 +19,7 @@ use crate::xml::Tree;
 const ABSENT: &str = "this refers to something that is not attached, by a name that another element of the document has, which MuJoCo 3.3.0 \
      may take for it: rename that, or attach the body that is meant";
 
-/// Copies a body of another model to where the element is.
+/// Copies a body of another model to the place of the element.
 pub(super) fn attach_model(
     e: &Element,
     spot: Insertion,
@@ -80,7 +80,7 @@ impl AttachedPart<'_> {
         *name = format!("{}{name}", self.prefix);
     }
 
-    /// Changes the name of an asset; one without is called after its file.
+    /// Changes the name of an asset; an unnamed one is named after its file.
     fn rename_asset(&self, name: &mut String, file: Option<&str>) {
         let whole = stem(name, file);
         if !whole.is_empty() {
@@ -101,7 +101,7 @@ impl AttachedPart<'_> {
         world || self.names.contains(&(thing, name.to_owned()))
     }
 
-    /// Changes the names that an element refers to. Returns whether it is copied; if it is not, `absent` gets the references that are missing.
+    /// Changes the names that an element refers to. Returns whether it is copied; if it is not, `absent` gets the missing references.
     fn admit<T: Reference>(&self, element: &mut T, absent: &mut Vec<MissingReference>) -> bool {
         let at = element.at();
         let renamed = !self.prefix.is_empty();
@@ -189,7 +189,7 @@ fn take(
     Ok(())
 }
 
-/// Copies bodies with their joints, geoms, sites, cameras and lights, and the frames that they are in. The values of keyframes move with a body;
+/// Copies bodies with their joints, geoms, sites, cameras and lights, and their frames. The values of keyframes move with a body;
 /// a body that is not copied keeps them for the next `<attach>` of this model.
 fn take_tree(taking: &AttachedPart, from: &mut TypedDocument, spot: Insertion, document: &mut TypedDocument) {
     let bodies = &from.bodies[taking.bodies.clone()];
@@ -232,7 +232,7 @@ fn take_tree(taking: &AttachedPart, from: &mut TypedDocument, spot: Insertion, d
     }
 }
 
-/// Returns the frames that the elements of a body are in.
+/// Returns the frames of the elements of a body.
 fn withins(body: &Body) -> impl Iterator<Item = usize> {
     let joints = body.joints.iter().map(|joint| joint.within);
     let geoms = body.geoms.iter().map(|geom| geom.within);

@@ -1,4 +1,4 @@
-//! The skin of a cable of boxes: a band along its middle, which is blown up to their thickness.
+//! The skin of a cable of boxes: a band along its middle, expanded to their thickness.
 
 use crate::composite::CompositeSkin;
 use crate::skin::{Bone, Skin};
@@ -15,7 +15,7 @@ const CUBIC: [[f64; 4]; 4] = [
 /// The division of the skin, which decides the number of vertices of each of its two faces.
 #[derive(Clone, Copy)]
 pub(super) struct SkinGrid {
-    /// Points that bones hold: along the cable and across, where a band that is divided has one in the middle, too.
+    /// Points that bones hold: along the cable and across, where a divided band also has one in the middle.
     held: [usize; 2],
     /// Pieces from one of them to the next.
     pieces: usize,
@@ -129,8 +129,8 @@ fn corners(first: bool, last: bool) -> [[f64; 4]; 4] {
     ]
 }
 
-/// Returns how much each of four by four points pulls a vertex between the middle four. The order of the sums is such that rounding
-/// leaves the bits that it leaves in MuJoCo, which keeps every weight that is not 0.
+/// Returns the weights of four by four points for a vertex between the middle four. The order of the sums reproduces MuJoCo's rounding, because
+/// MuJoCo keeps every nonzero weight.
 fn weights(x: [f64; 4], y: [f64; 4], corners: &[[[f64; 4]; 4]; 2]) -> [[f64; 4]; 4] {
     let square = |of: &dyn Fn(usize, usize) -> f64| -> [[f64; 4]; 4] {
         std::array::from_fn(|p| std::array::from_fn(|q| of(p, q)))

@@ -1,4 +1,4 @@
-//! Contents of bodies: child bodies, frames, copies, and the elements that hang on them.
+//! Contents of bodies: child bodies, frames, copies, and their elements.
 
 use super::attach::attach_model;
 use super::cable::cable;
@@ -47,7 +47,7 @@ pub(super) fn content(
     Ok(())
 }
 
-/// Adds a child body. It is kept out of `content`, which recurses, so that its stack frames stay small.
+/// Adds a child body. It is separate from `content`, which recurses, so that stack frames stay small.
 #[inline(never)]
 fn child(
     e: &Element,
@@ -66,7 +66,7 @@ fn child(
     Ok(document.bodies.len() - 1)
 }
 
-/// Adds a frame. It is kept out of `content`, which recurses, so that its stack frames stay small.
+/// Adds a frame. It is separate from `content`, which recurses, so that stack frames stay small.
 #[inline(never)]
 fn frame(
     e: &Element,
@@ -99,7 +99,7 @@ fn free_joint(e: &Element) -> Joint {
 
 const FULL: &str = "fullinertia and an orientation are mutually exclusive";
 
-/// Adds any other element to a body. It is kept out of `content`, which recurses, so that its stack frames stay small.
+/// Adds any other element to a body. It is separate from `content`, which recurses, so that stack frames stay small.
 #[inline(never)]
 fn hang(e: &Element, spot: Insertion, around: &str, classes: &Classes, bodies: &mut [Body]) -> Result<(), LoadError> {
     let (id, within) = (spot.body, spot.within);

@@ -11,7 +11,7 @@ use crate::table::Table;
 const NODES: &str = "vertices between nodes (node, dof=\"trilinear\") are not simulated: give each vertex a body of its own (dof=\"full\")";
 const PARENT: &str = "the body around a flexcomp needs a name";
 const HELD: &str = "a flexcomp has elasticity or edges of constant length (equality=\"true\"), not both";
-/// Stands also where a model is attached.
+/// Also used where a model is attached.
 pub(super) const COPIED: &str = "a flex in a <replicate> or in an attached model is not copied: write it into the document itself, once for each copy";
 
 /// Reads a `<flex>`. An error describes the fault.

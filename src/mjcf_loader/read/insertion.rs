@@ -4,7 +4,7 @@ use super::Classes;
 use crate::error::LoadError;
 use crate::schema::Element;
 
-/// The body, and the frame in it, that new elements are inserted into.
+/// The body, and the frame in it, into which new elements are inserted.
 #[derive(Clone, Copy)]
 pub(super) struct Insertion {
     pub body: usize,

@@ -12,7 +12,7 @@ use crate::xml::Tree;
 /// Distributes the values of the keyframes to the elements of the document. Returns the keyframes, with a prefix and a suffix on their names.
 ///
 /// # Errors
-/// A keyframe has another size than the state has at this time.
+/// The size of a keyframe differs from that of the state at this time.
 pub(super) fn say_keys(
     document: &mut TypedDocument,
     (prefix, suffix): (&str, &str),
@@ -76,8 +76,8 @@ fn say(key: &Key, name: &str, bodies: &mut [Body], actuators: &mut [Actuator]) {
     }
 }
 
-/// Makes the document's own keyframes as long as its state, after elements were added. MuJoCo 3.3.0 does not know at this point in which units
-/// angles are, nor the coordinates of ball and free joints: those become 0, the others `ref` as it is written.
+/// Makes the document's own keyframes as long as its state, after elements were added. At this point MuJoCo 3.3.0 knows neither the unit of angles
+/// nor the coordinates of ball and free joints: those become 0, the others `ref` as written.
 pub(super) fn resize_keys(document: &mut TypedDocument) {
     if document.keys.is_empty() {
         return;
@@ -113,8 +113,7 @@ pub(super) fn resize_keys(document: &mut TypedDocument) {
     }
 }
 
-/// Returns the quaternions of mocap bodies. Orientations that are written in another way are not converted yet, in MuJoCo either, and count as
-/// none.
+/// Returns the quaternions of mocap bodies. Orientations in other forms are not converted yet, as in MuJoCo, and count as missing.
 fn body_quats(bodies: &[Body]) -> Vec<f64> {
     use crate::document::Orientation;
     let moved = bodies.iter().filter(|body| body.mocap);

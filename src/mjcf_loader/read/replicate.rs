@@ -30,7 +30,7 @@ pub(super) struct ReplicateContent {
 }
 
 impl ReplicateContent {
-    /// Returns where the elements in it are put.
+    /// Returns where its elements are inserted.
     pub fn spot(&self) -> Insertion {
         Insertion {
             body: self.body,
@@ -39,8 +39,7 @@ impl ReplicateContent {
     }
 }
 
-/// Adds the body and the frame for the content of a `<replicate>`. It is kept out of `content`, which recurses, so that its stack frames stay
-/// small.
+/// Adds the body and the frame for the content of a `<replicate>`. It is separate from `content`, which recurses, so that stack frames stay small.
 #[inline(never)]
 pub(super) fn open(
     e: &Element,
@@ -80,7 +79,7 @@ impl ReplicateContent {
         frame
     }
 
-    /// Makes the copies and takes the original away. As [`open`], it is kept out of `content`.
+    /// Makes the copies and removes the original. Like [`open`], it is separate from `content`.
     #[inline(never)]
     pub fn copy(&self, spot: Insertion, tree: &Tree, document: &mut TypedDocument) -> Result<(), LoadError> {
         let at = self.replicate.at;
@@ -132,7 +131,7 @@ impl ReplicateContent {
         Ok(())
     }
 
-    /// Adds a copy of the bodies from `self.body` on and of the frames from `self.frame` on, up to `ends`.
+    /// Adds a copy of the bodies starting at `self.body` and of the frames starting at `self.frame`, up to `ends`.
     fn copy_tree(
         &self,
         spot: Insertion,
@@ -210,7 +209,7 @@ fn rename(name: &mut String, suffix: &str) {
     }
 }
 
-/// Appends a suffix to the names of a body's elements. `moved` maps the frames that they are in. Cameras and lights aim at the copies of
+/// Appends a suffix to the names of a body's elements. `moved` maps their frames. Cameras and lights aim at the copies of
 /// their targets.
 fn readdress_hung(body: &mut Body, suffix: &str, moved: &dyn Fn(Option<usize>) -> Option<usize>) {
     for joint in &mut body.joints {
@@ -333,8 +332,8 @@ fn forget_lost(before: &NameTable, document: &mut TypedDocument) {
     keep(&mut document.sensors, before, &now);
 }
 
-/// Removes the names of elements that were removed, and those that MuJoCo 3.3.0 does not find any more: it looks the rest up by their old
-/// indices, and the last ones have moved up. Elements that refer to those are removed, too.
+/// Removes the names of removed elements, and those that MuJoCo 3.3.0 no longer finds: it looks up the rest by their old indices, and the last ones
+/// have moved up. Elements that refer to those are also removed.
 fn forget_names<T: Reference>(thing: ElementKind, before: &[String], mut lost: Vec<T>, now: &mut NameTable) {
     let left = before.len() - lost.len();
     let taken = lost.iter_mut().map(|element| element.name().clone());

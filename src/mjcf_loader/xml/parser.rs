@@ -1,4 +1,4 @@
-//! The text of one file -> elements of the tree.
+//! Parses the text of one file into elements of the tree.
 
 use std::borrow::Cow;
 
@@ -34,7 +34,7 @@ impl Cursor<'_> {
     }
 }
 
-/// Parses the text of the last file of the tree. Keeps its own stack, so depth costs no stack.
+/// Parses the text of the last file of the tree. Keeps its own stack, so nesting does not use the call stack.
 pub(super) struct Parser<'t> {
     tree: &'t mut Tree,
     file: usize,
@@ -169,7 +169,7 @@ impl<'t> Parser<'t> {
     }
 }
 
-/// Escapes the ampersands that begin neither one of XML's own entities nor a character by its number.
+/// Escapes the ampersands that begin neither one of XML's own entities nor a character reference.
 fn escape_ampersands(text: Cow<'_, str>) -> Cow<'_, str> {
     let reference = |behind: &str| {
         let number = |digits: &str, is_digit: fn(&char) -> bool| {

@@ -41,7 +41,7 @@ impl FileSystem {
         Ok((Self::new(file.parent().unwrap_or(Path::new(""))), name.to_owned()))
     }
 
-    /// Returns the folder from which files are looked for.
+    /// Returns the folder relative to which files are searched for.
     pub fn folder(&self) -> &Path {
         &self.folder
     }
@@ -56,7 +56,7 @@ impl AssetSource for FileSystem {
         self.folder.join(path).is_file()
     }
 
-    /// Keeps `..` that lead above the folder, and what absolute paths begin with. A `\` separates as a `/` does, as in MuJoCo.
+    /// Keeps `..` that lead above the folder, and the prefixes of absolute paths. As in MuJoCo, `\` separates like `/`.
     fn resolve(&self, dir: &str, file: &str) -> Result<String, AssetError> {
         if file.is_empty() || file.contains('\0') {
             return Err(AssetError::BadPath(file.to_owned()));

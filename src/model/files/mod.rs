@@ -1,4 +1,4 @@
-//! Files from outside, which are read within limits, and files of ours, which are replaced whole or not at all.
+//! Untrusted files, which are read within limits, and our own files, which are replaced as a whole or not at all.
 
 mod owner;
 mod unfinished;
@@ -11,8 +11,7 @@ pub use owner::Owner;
 pub use unfinished::replace_file;
 pub use unfinished::{replace_file_with, sweep, unfinished};
 
-/// Opens an untrusted file. Anything but a regular file is refused before it is opened: a pipe would block for ever,
-/// and a device may have no end.
+/// Opens an untrusted file. Anything but a regular file is refused before it is opened: a pipe could block forever, and a device may be endless.
 pub fn open(path: &Path) -> io::Result<File> {
     let regular = |meta: std::fs::Metadata| {
         if meta.is_file() {
@@ -50,7 +49,7 @@ pub fn read(path: &Path, limit: u64) -> io::Result<Vec<u8>> {
     ))
 }
 
-/// Describes something that is not a regular file.
+/// Describes an entry that is not a regular file.
 fn kind(kind: FileType) -> &'static str {
     #[cfg(unix)]
     {

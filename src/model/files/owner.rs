@@ -7,14 +7,14 @@ use std::path::{Path, PathBuf};
 /// The file in an owned folder that names its owner.
 const NAME: &str = ".owner";
 
-/// A folder that belongs to this process until the value is dropped or the process ends, however it ends.
+/// A folder that belongs to this process until the value is dropped or the process ends in any way.
 ///
 /// The lock is the system's, on a file that holds the number of the process. A process may own a folder several times. On
 /// file systems without locks nobody is refused.
 #[derive(Debug)]
 pub struct Owner {
     path: PathBuf,
-    /// None in a process that owned the folder already.
+    /// `None` in a process that already owned the folder.
     file: Option<File>,
 }
 

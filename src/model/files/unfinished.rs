@@ -8,7 +8,7 @@ use std::fs::{File, TryLockError};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
-/// How many files of one name can be written at the same time.
+/// Maximum number of files of one name that can be written at the same time.
 const AT_ONCE: usize = 1000;
 
 /// Creates the unfinished file `.NAME.N.tmp` in a folder, for the smallest `N` that no process is writing.
@@ -49,7 +49,7 @@ pub fn sweep(folder: &Path) {
     }
 }
 
-/// Returns whether a name is one that [`unfinished`] gives.
+/// Returns whether a name has the form that [`unfinished`] creates.
 fn is_unfinished(name: &OsStr) -> bool {
     let number = name
         .to_str()
@@ -72,8 +72,7 @@ fn remove_if_abandoned(path: &Path) {
     }
 }
 
-/// Writes a new file next to `path` and renames it over it: `path` holds its old content or all of `bytes`, whenever
-/// the process ends.
+/// Writes a new file next to `path` and renames it over it: `path` holds either its old content or all of `bytes`, no matter when the process ends.
 pub fn replace_file(path: &Path, bytes: &[u8]) -> io::Result<()> {
     replace_file_with(path, |file| file.write_all(bytes))
 }

@@ -6,7 +6,7 @@ use crate::limits::Limits;
 /// The format of a file with heights.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum HeightFormat {
-    /// A picture, whose red channel counts.
+    /// A picture, of which the red channel is used.
     Png,
     /// Numbers of rows and columns, then numbers in single precision.
     Custom,
@@ -58,7 +58,7 @@ impl Heights {
         }
     }
 
-    /// Checks a number of heights before memory is taken for them.
+    /// Checks a number of heights before memory is allocated for them.
     pub fn check_count(count: usize, limits: &Limits) -> Result<(), String> {
         let most = limits.mesh_elements;
         if count > most {

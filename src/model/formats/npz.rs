@@ -45,7 +45,7 @@ pub enum NpzError {
         /// The error of the file system.
         source: io::Error,
     },
-    /// The file is not an archive, or a damaged one.
+    /// The file is not an archive, or is damaged.
     #[error("{file}: not a readable npz archive: {reason}")]
     Archive {
         /// The file.
@@ -61,7 +61,7 @@ pub enum NpzError {
         /// The requested array.
         array: String,
     },
-    /// The array is damaged, too large or of a kind that is not read.
+    /// The array is damaged, too large or of an unsupported kind.
     #[error("{file}: array `{}`: {}", quoted(.array), quoted(.reason))]
     Array {
         /// The file.
@@ -98,7 +98,7 @@ pub enum NpzError {
 pub struct Array<T> {
     /// The length of each dimension.
     pub shape: Vec<usize>,
-    /// The numbers, the last dimension fastest.
+    /// The numbers; the last dimension varies fastest.
     pub data: Vec<T>,
 }
 

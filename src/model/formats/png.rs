@@ -15,7 +15,7 @@ pub use read::{Picture, check_png, decode_png, is_opaque};
 /// An error in writing a picture.
 #[derive(Debug, Error)]
 pub enum PictureError {
-    /// The file system refuses.
+    /// The file system returned an error.
     #[error("{}: {source}", path.display())]
     Io {
         /// The file.
@@ -53,7 +53,7 @@ pub enum PngError {
     Encoder(#[from] EncodingError),
 }
 
-/// Writes a PNG picture, as a whole: red, green and blue of each pixel, rows from the top.
+/// Writes a PNG picture, replacing an existing file as a whole: red, green and blue of each pixel, rows from the top.
 ///
 /// # Errors
 /// Errors of the file system; bytes that are not `3 * width * height`.

@@ -29,7 +29,7 @@ pub enum SkinError {
     Name(usize),
 }
 
-/// A skin as a file has it.
+/// A skin as stored in a file.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct SkinFile {
     /// Vertices, m.
@@ -42,18 +42,18 @@ pub struct SkinFile {
     pub bones: Vec<BoneFile>,
 }
 
-/// A body that pulls, as a file has it.
+/// A body that pulls, as stored in a file.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct BoneFile {
     /// Name of the body.
     pub body: String,
-    /// Its position where the skin is as written, m.
+    /// Its position in the pose in which the skin is given, m.
     pub bindpos: [f32; 3],
     /// Its orientation there.
     pub bindquat: [f32; 4],
     /// Vertices that it pulls.
     pub vertid: Vec<u32>,
-    /// How much it pulls each of them.
+    /// Weight with which it pulls each of them.
     pub vertweight: Vec<f32>,
 }
 
@@ -64,7 +64,7 @@ struct ByteReader<'a> {
 }
 
 impl ByteReader<'_> {
-    /// Reads rows of numbers; nothing is set aside for more than the file has.
+    /// Reads rows of numbers; memory is allocated only for as many as the file has.
     fn rows<const N: usize>(&mut self, count: usize) -> Result<Vec<[f32; N]>, SkinError> {
         self.each(count, N, floats)
     }

@@ -100,7 +100,7 @@ fn tetrahedron(points: &[Vec3], [a, b, c, d]: [usize; 4]) -> Option<Vec<Face>> {
     Some(faces)
 }
 
-/// An edge of the border between removed faces and others: its two corners, and the face beyond it.
+/// An edge of the border between removed and other faces: its two corners, and the face beyond it.
 type BorderEdge = (usize, usize, usize);
 
 /// Removes the faces that a new corner sees, beginning with `first`; returns their border and the points above them.
@@ -126,8 +126,8 @@ fn remove_seen(faces: &mut [Face], first: usize, sees: impl Fn(&Face) -> bool) -
     (border, orphans)
 }
 
-/// Joins a border to a new corner by new faces; `None` if it is not one closed line. `starting_at` has an unset entry for
-/// each point before and after.
+/// Joins a border to a new corner by new faces; `None` if it is not one closed line. Before and after the call, `starting_at` has an unset entry for
+/// each point.
 fn join(
     points: &[Vec3],
     faces: &mut Vec<Face>,
@@ -160,8 +160,8 @@ fn join(
     Some(())
 }
 
-/// Computes the faces of the hull, removed ones among them; `None` if the points span no volume or rounding leaves a hole in it.
-/// Points that leave the hull by less than `tolerance` are taken to be on it.
+/// Computes the faces of the hull, including removed ones; `None` if the points span no volume or rounding leaves a hole in it.
+/// Points outside the hull by less than `tolerance` count as on it.
 pub fn quickhull(points: &[Vec3], tolerance: f64) -> Option<Vec<Face>> {
     let mut faces = tetrahedron(points, first_corners(points, tolerance)?)?;
     let assign = |i: usize, faces: &mut [Face]| {

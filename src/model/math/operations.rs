@@ -209,7 +209,7 @@ pub fn rotation_between(from: Quat, to: Quat) -> Vec3 {
     scale(axis, short)
 }
 
-/// Returns the quaternion that stands in `numbers` from `at` on.
+/// Returns the quaternion in `numbers` that starts at `at`.
 #[inline(always)]
 pub fn quat_at(numbers: &[f64], at: usize) -> Quat {
     [numbers[at], numbers[at + 1], numbers[at + 2], numbers[at + 3]]

@@ -1,6 +1,6 @@
 //! Sine and cosine.
 
-/// Up to this angle, rad, the polynomials below hold.
+/// The polynomials below are valid up to this angle, rad.
 const SMALL: f64 = 0.049;
 /// Coefficients of `sin(x) - x` and `cos(x) - 1`, of the powers 3, 5, 7, 9 and 2, 4, 6, 8: Taylor's, whose next terms are less than 2^-54
 /// of the first up to [`SMALL`].

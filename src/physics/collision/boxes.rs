@@ -3,8 +3,8 @@
 use crate::math::{Mat3, Vec3, add, column, dot, mat_vec, sub};
 use crate::model::GeomType;
 
-/// Returns a world box that holds everything nearer to a geom than `slack` (m), from its size and the box around it in its frame, which only meshes
-/// and height fields need. A plane fills the half space behind it.
+/// Returns a world box that contains everything nearer to a geom than `slack` (m), from its size and the box around it in its frame, which only
+/// meshes and height fields need. A plane fills the half space behind it.
 #[inline(always)]
 pub(super) fn world(
     kind: GeomType,
@@ -48,7 +48,7 @@ pub(super) fn world(
     ]
 }
 
-/// From this half size on a box has no end in a direction (MuJoCo's `mjMAXVAL`), m.
+/// Half size from which a box counts as infinite in a direction (MuJoCo's `mjMAXVAL`), m.
 const ENDLESS: f64 = 1e10;
 
 /// A box along given axes: its centre, its half sizes and its axes, the columns of the matrix.
@@ -69,7 +69,7 @@ impl<'a> OrientedBox<'a> {
         }
     }
 
-    /// Returns half of the length of its shadow on a line in the direction `axis`.
+    /// Returns half the length of its projection onto the direction `axis`.
     fn reach(&self, axis: Vec3) -> f64 {
         (0..3)
             .map(|k| dot(axis, column(self.mat, k)).abs() * self.half[k])

@@ -1,4 +1,4 @@
-//! MuJoCo's sweep over bodies, where its rounding decides: it sorts in single precision.
+//! The part of MuJoCo's sweep over bodies in which rounding matters: it sorts in single precision.
 
 use crate::math::{Mat3, Vec3, dot, principal_axes, quat_normalize, quat_to_mat, scale, sub};
 use crate::model::{GeomType, Model};
@@ -22,7 +22,7 @@ pub(super) fn drops(model: &Model, s: &State, [a, b]: [usize; 2]) -> bool {
     decides(model, s, [a, b])
 }
 
-/// As [`drops`], for spheres that hardly overlap. Not inlined, because most steps have none.
+/// Like [`drops`], for spheres that barely overlap. Not inlined, because most steps have none.
 #[inline(never)]
 fn decides(model: &Model, s: &State, geoms: [usize; 2]) -> bool {
     let mut bodies = geoms.map(|g| model.geom_bodyid[g]);
@@ -49,7 +49,7 @@ fn is_explicit(model: &Model, [a, b]: [usize; 2]) -> bool {
     model.pair_geom.iter().any(|pair| *pair == [a, b] || *pair == [b, a])
 }
 
-/// Returns the axes along which bodies are swept: those of the spread of all geoms that do not stand in the world itself.
+/// Returns the axes along which bodies are swept: the principal axes of the distribution of all geoms that are not in the world itself.
 fn frame(model: &Model, s: &State) -> Mat3 {
     let swept = || {
         (0..model.ngeom())

@@ -13,10 +13,10 @@ use crate::math::*;
 use crate::model::{Flex, FlexSelfCollide, GeomType, Model};
 use crate::state::State;
 
-/// The most pairs of elements that sweep and prune finds in a flex, as in MuJoCo.
+/// Maximum number of pairs of elements that sweep and prune finds in a flex, as in MuJoCo.
 const MOST_PAIRS: usize = 1_000_000;
 
-/// Detection of contacts of flexes, with all working memory.
+/// Detection of flex contacts, with all working memory.
 #[derive(Clone, Debug, Default)]
 pub struct FlexSweep {
     /// Boxes around all elements, of one flex after another: centre and half sizes, m.
@@ -42,7 +42,7 @@ fn ball_apart(centre: Vec3, radius: f64, b: &[f64; 6]) -> bool {
     (0..3).any(|k| centre[k] + radius < b[k] - b[k + 3] || centre[k] - radius > b[k] + b[k + 3])
 }
 
-/// Returns the smallest box around two.
+/// Returns the smallest box around two boxes.
 fn joined(a: &[f64; 6], b: &[f64; 6]) -> [f64; 6] {
     let low = |k: usize| (a[k] - a[k + 3]).min(b[k] - b[k + 3]);
     let high = |k: usize| (a[k] + a[k + 3]).max(b[k] + b[k + 3]);
@@ -57,7 +57,7 @@ fn is_active(flex: &Flex, element: usize) -> bool {
     flex.dim < 3 || i64::try_from(flex.elemlayer[element]).is_ok_and(|layer| layer < i64::from(flex.activelayers))
 }
 
-/// Two sides of contacts with everything that is the same for all of them.
+/// Two sides of contacts, with everything that is the same for all of these contacts.
 struct FlexPair<'a> {
     model: &'a Model,
     options: &'a ContactOptions,
@@ -345,8 +345,8 @@ impl FlexSweep {
         }
     }
 
-    /// Selects the pairs of elements of a flex that may touch each other. As in MuJoCo, sweep and prune decides their order; where MuJoCo goes
-    /// through its tree of boxes, pairs come by their elements.
+    /// Selects the pairs of elements of a flex that may touch each other. As in MuJoCo, sweep and prune decides their order; where MuJoCo traverses
+    /// its tree of boxes, pairs are ordered by their elements.
     fn select_pairs(&mut self, model: &Model, f: usize) {
         let flex = &model.flexes[f];
         let sweeps = match flex.selfcollide {

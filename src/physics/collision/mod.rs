@@ -18,7 +18,7 @@ pub use pairs::{ContactRules, GeomPair, PairTable};
 pub use sweep::Sweep;
 pub use sweep::placed;
 
-/// Returns the options of the contact routines that a model asks for, with the given peculiarities.
+/// Returns the options of the contact routines for a model, with the given peculiarities.
 pub fn contact_options(model: &Model, quirks: Quirks) -> ContactOptions {
     ContactOptions {
         ccd_tolerance: model.opt.ccd_tolerance,

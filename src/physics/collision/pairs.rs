@@ -9,8 +9,7 @@ use crate::math::{MINVAL, order};
 use crate::model::{Flex, GeomType, Model};
 pub use rules::ContactRules;
 
-/// Scenes of up to this many geoms have a table of all their pairs; the pairs of larger ones are made as geoms come near
-/// each other.
+/// Scenes of up to this many geoms have a table of all their pairs; in larger scenes, pairs are created when geoms come near each other.
 const TABULATED: usize = 256;
 
 /// Least friction coefficient (MuJoCo's `mjMINMU`).
@@ -103,7 +102,7 @@ impl PairTable {
         }
     }
 
-    /// Returns whether a geom may touch any other, as far as its own properties say.
+    /// Returns whether a geom may touch any other, according to its own properties.
     pub(super) fn takes_part(&self, geom: usize) -> bool {
         match &self.table {
             Some(table) => table.pairs.iter().any(|p| p.geom.contains(&geom)),
@@ -212,7 +211,7 @@ pub(super) struct ContactMaterial {
 }
 
 impl ContactMaterial {
-    /// Returns that of a geom.
+    /// Returns the properties of a geom.
     pub(super) fn of_geom(model: &Model, g: usize) -> Self {
         Self {
             priority: model.geom_priority[g],
@@ -226,7 +225,7 @@ impl ContactMaterial {
         }
     }
 
-    /// Returns that of a flex.
+    /// Returns the properties of a flex.
     pub(super) fn of_flex(flex: &Flex) -> Self {
         Self {
             priority: flex.priority,
@@ -296,7 +295,7 @@ fn midphase(model: &Model, [a, b]: [usize; 2]) -> bool {
     model.opt.flags.midphase && geoms(a) * geoms(b) > 1 && inexact
 }
 
-/// Returns the largest margin of the geoms of a geom's body.
+/// Returns the largest margin among the geoms of a geom's body.
 fn body_margin(model: &Model, g: usize) -> f64 {
     let body = model.geom_bodyid[g];
     let first = model.body_geomadr[body];

@@ -26,7 +26,7 @@ struct WorldBox {
     high: Vec3,
 }
 
-/// Contact detection. It keeps the sorted order of the last step, which is nearly that of the next, and all working memory.
+/// Contact detection. It keeps all working memory and the sorted order of the last step, which is nearly that of the next one.
 #[derive(Clone, Debug)]
 pub struct Sweep {
     options: ContactOptions,
@@ -35,7 +35,7 @@ pub struct Sweep {
     boxes: Vec<WorldBox>,
     /// Whether the boxes of geoms that never move are known.
     fixed_known: bool,
-    /// Those of `boxes` that move or are near something that does, in the same order.
+    /// The boxes that move or are near something that moves, in the same order.
     near: Vec<WorldBox>,
     /// Pairs whose boxes overlap, by their index in the table or, without a table, by their order.
     candidates: Vec<u32>,
@@ -151,7 +151,7 @@ impl Sweep {
         }));
     }
 
-    /// Computes the boxes of geoms that move, and at the first call those of the others.
+    /// Computes the boxes of geoms that move, and in the first call also those of the others.
     #[inline(always)]
     fn place(&mut self, model: &Model, s: &State) {
         for b in &mut self.boxes {
@@ -171,7 +171,7 @@ impl Sweep {
         self.fixed_known = true;
     }
 
-    /// Fills `near`: geoms that never move count if they overlap the box around all that do.
+    /// Fills `near`: geoms that never move are included if they overlap the box around all moving ones.
     #[inline(always)]
     fn select_near(&mut self) {
         let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);

@@ -1,4 +1,4 @@
-//! MuJoCo's trees of boxes, which leave pairs of geoms out before any routine looks for their contacts.
+//! MuJoCo's trees of boxes, which exclude pairs of geoms before any routine searches for their contacts.
 
 use std::ops::Range;
 
@@ -11,8 +11,8 @@ use crate::state::State;
 /// Lengths that differ by less are equal (MuJoCo's `mjEPS`), m.
 const EPS: f64 = 1e-14;
 
-/// The trees of all bodies. A node is a box along the body's axes of inertia around some of its geoms; those of each half of them, in
-/// the order of their places along its longest edge, are the nodes below it, and a geom's own is the last.
+/// The trees of all bodies. A node is a box along the body's axes of inertia around some of its geoms. Its children contain the two halves of these
+/// geoms, ordered along its longest edge; the leaves contain one geom.
 #[derive(Clone, Debug)]
 pub(super) struct BodyTrees {
     /// The box of each node: centre and half sizes from the body's centre of mass along its axes of inertia, m.
@@ -52,7 +52,7 @@ impl BodyTrees {
         trees
     }
 
-    /// Adds the node around some geoms of a body, and those below it.
+    /// Adds the node around some geoms of a body, and the nodes below it.
     fn node(&mut self, leaves: &mut [Leaf]) {
         let Some(first) = leaves.first() else {
             return;

@@ -92,7 +92,7 @@ impl RowAppender<'_> {
     }
 
     /// Starts a block for the motion of a point of body `b` relative to a point of body `a`, over the tiles that move
-    /// either; those that move both alike are left out. `rows` turns translation and rotation (three axes each) of a
+    /// either; those that move both in the same way are left out. `rows` turns translation and rotation (three axes each) of a
     /// tile into rows.
     #[inline(always)]
     pub(super) fn relative(
@@ -192,7 +192,7 @@ impl RowAppender<'_> {
         i.b
     }
 
-    /// Appends a row of an impedance; `diag` approximates the diagonal of `J M^-1 J'`.
+    /// Appends a row with an impedance; `diag` approximates the diagonal of `J M^-1 J'`.
     #[inline(always)]
     pub(super) fn row_with(&mut self, pos: f64, margin: f64, diag: f64, i: Impedance) {
         // the regularisation R in chapter "Computation" of MuJoCo's manual

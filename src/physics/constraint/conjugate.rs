@@ -8,8 +8,8 @@ use crate::state::State;
 use crate::tiles::{Lanes, total};
 use crate::topology::Topology;
 
-/// Finds directions by the rule of Polak and Ribiere, with the inertia as preconditioner; holds the working memory. There is one
-/// island, of all trees.
+/// Finds directions by the rule of Polak and Ribiere, with the inertia as preconditioner, and holds the working memory. There is a single island of
+/// all trees.
 #[derive(Clone, Debug, Default)]
 pub(super) struct ConjugateGradient {
     /// The gradient, and `M^-1` times it (nv).
@@ -17,7 +17,7 @@ pub(super) struct ConjugateGradient {
     solution: Vec<f64>,
     /// `M^-1` times the gradient, in lanes.
     descent: Vec<Lanes>,
-    /// Both where the last direction started.
+    /// Both at the start of the last direction.
     old_gradient: Vec<Lanes>,
     old_descent: Vec<Lanes>,
 }
@@ -35,7 +35,7 @@ impl ConjugateGradient {
         }
     }
 
-    /// Sets the search direction of an island from its gradient, and from the direction before unless it is the first.
+    /// Sets the search direction of an island from its gradient and, except for the first, from the previous direction.
     #[doc(alias = "mj_solCG")]
     pub fn descend(
         &mut self,
@@ -62,7 +62,7 @@ impl ConjugateGradient {
         self.old_descent.clone_from(&self.descent);
     }
 
-    /// Returns the weight of the last direction: 0 where the rule gives a negative one.
+    /// Returns the weight of the last direction: 0 if the rule gives a negative one.
     fn weight(&self, gradient: &[Lanes]) -> f64 {
         let (mut above, mut below) = ([0.0; 4], [0.0; 4]);
         let old = self.old_gradient.iter().zip(&self.old_descent);

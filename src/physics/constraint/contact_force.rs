@@ -1,4 +1,4 @@
-//! Forces of contacts from those of their rows.
+//! Contact forces, computed from the forces of their rows.
 
 use crate::detected::Contact;
 use crate::model::{ConeType, Model};
@@ -31,7 +31,7 @@ fn force(c: &Contact, cone: ConeType, rows: &[f64]) -> [f64; 6] {
     force
 }
 
-/// Returns the force and torque in the frame of a contact that the forces along the edges of its pyramid add up to
+/// Returns the sum of the forces along the edges of a contact's pyramid, as force and torque in the frame of the contact
 /// (MuJoCo's `mju_decodePyramid`).
 fn decode_pyramid(edges: &[f64], friction: &[f64; 5]) -> [f64; 6] {
     let mut force = [0.0; 6];

@@ -20,10 +20,10 @@ use crate::vectorize::vectorized;
 mod matrix;
 mod noslip;
 
-/// A change of forces that would raise the cost by more than this is undone.
+/// A change of forces that raises the cost by more than this is undone.
 const RISE: f64 = 1e-10;
 
-/// Most rows of an elliptic cone.
+/// Maximum number of rows of an elliptic cone.
 const CONE_ROWS: usize = 6;
 
 /// Solves for the forces of constraints; holds the working memory.
@@ -31,13 +31,13 @@ const CONE_ROWS: usize = 6;
 pub struct DualSolver {
     /// `J` (nefc x nv), row by row.
     jac: Vec<f64>,
-    /// `A`: nefc rows of nefc numbers, each filled up with zeros to whole vectors of four.
+    /// `A`: nefc rows of nefc numbers, each padded with zeros to whole vectors of four.
     a: Vec<f64>,
     /// Length of such a row.
     stride: usize,
     b: Vec<f64>,
-    /// `A f + b` at the present forces, which follows each of their changes: most rows do not change any more after a few sweeps, and then
-    /// cost nothing. Filled up as rows of `A` are.
+    /// `A f + b` at the current forces, which follows each of their changes: most rows no longer change after a few sweeps, and then cost nothing.
+    /// Padded like rows of `A`.
     gradient: Vec<f64>,
     /// `M^-1` times the forces on the joints (nv).
     column: Vec<f64>,
@@ -64,8 +64,8 @@ fn bounds(block: &Block) -> [f64; 2] {
 }
 
 impl DualSolver {
-    /// Computes `qacc, qfrc_constraint` and the row forces by projected Gauss-Seidel. Starts from the forces that `qacc_warmstart`
-    /// asks for, or from none, whichever costs less. `bodies` must be up to date.
+    /// Computes `qacc, qfrc_constraint` and the row forces by projected Gauss-Seidel. Starts from the forces that correspond to `qacc_warmstart`, or
+    /// from zero forces, whichever cost less. `bodies` must be up to date.
     ///
     /// # Errors
     /// More numbers in the matrices than [`Limits::dual_numbers`](mjcf_sim_model::Limits::dual_numbers).
@@ -103,7 +103,7 @@ impl DualSolver {
         &self.a[i * self.stride..(i + 1) * self.stride]
     }
 
-    /// Sets the forces that the last acceleration asks for, or none if those cost less, and the gradient at them.
+    /// Sets the forces that correspond to the last acceleration, or zero forces if those cost less, and the gradient there.
     fn start(&mut self, model: &Model, efc: &mut Efc, s: &State) {
         let nv = model.nv;
         if !model.opt.flags.warmstart {
@@ -195,7 +195,7 @@ impl DualSolver {
         model.opt.iterations
     }
 
-    /// Improves the forces of a contact with an elliptic cone: along the ray on which they are, then friction at that normal force.
+    /// Improves the forces of a contact with an elliptic cone: first along the ray on which they lie, then friction at that normal force.
     /// Returns the change of the cost.
     #[inline(always)]
     fn cone(&mut self, block: &Block, shape: &ConeShape, force: &mut [f64]) -> f64 {
@@ -241,7 +241,7 @@ impl DualSolver {
         change
     }
 
-    /// Records the changes of forces from `first` on.
+    /// Records the changes of forces starting at `first`.
     #[inline(always)]
     fn follow(&mut self, first: usize, force: &[f64], old: &[f64]) {
         for (r, (force, old)) in force.iter().zip(old).enumerate() {
@@ -276,7 +276,7 @@ fn scale(model: &Model) -> f64 {
 }
 
 /// Returns the change of the cost from `old` forces to new ones, of `n` rows with the matrix `a` and the `residual` at the old ones.
-/// Where it rises, the old ones are put back.
+/// If it rises, the old forces are restored.
 #[inline(always)]
 fn settle(
     n: usize,
@@ -297,7 +297,7 @@ fn settle(
     change
 }
 
-/// Returns the sum of the products of two vectors' elements, in four partial sums: one sum would wait for each of its additions.
+/// Returns the sum of the products of two vectors' elements, in four partial sums, because a single sum would wait for each addition.
 #[inline(always)]
 fn product(a: &[f64], b: &[f64]) -> f64 {
     let ((a, a_rest), (b, b_rest)) = (a.as_chunks::<4>(), b.as_chunks::<4>());
@@ -348,7 +348,7 @@ mod tests {
         }
     }
 
-    /// Leaves a box on a slope for a while; returns how far it slid, and its state.
+    /// Leaves a box on a slope for a while; returns the distance that it slid, and its state.
     fn slide(option: &str) -> (f64, State) {
         let text = format!(
             "<mujoco><option gravity='3 0 -9.81' {option}/><worldbody><geom type='plane' size='9 9 1'/>

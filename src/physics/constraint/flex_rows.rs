@@ -1,4 +1,4 @@
-//! The rows of contacts of flexes, which several bodies on either side may move.
+//! The rows of flex contacts, which several bodies on either side may move.
 
 use super::ConstraintType;
 use super::append::RowAppender;
@@ -8,7 +8,7 @@ use crate::math::{MINVAL, Vec3, norm, sub};
 use crate::model::{ConeType, Model};
 use crate::state::State;
 
-/// The most bodies that move both sides of a contact.
+/// Maximum number of bodies that move both sides of a contact.
 const MOST: usize = 8;
 
 /// The bodies that move a contact, each with its weight, which is negative on the first side.

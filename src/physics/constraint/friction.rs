@@ -2,7 +2,7 @@
 
 use crate::math::MINVAL;
 
-/// Most directions of friction of a contact.
+/// Maximum number of friction directions of a contact.
 pub(super) const DIRECTIONS: usize = 5;
 
 /// A quadratic cost `x' A x / 2 + x' b` of up to five numbers.
@@ -15,12 +15,12 @@ pub(super) struct Quadratic {
 
 /// Iterations on the multiplier of the ellipsoid.
 const ITERATIONS: usize = 20;
-/// Below this, determinants, violations and changes of the multiplier count as none, as in MuJoCo.
+/// Below this, determinants, violations and changes of the multiplier count as zero, as in MuJoCo.
 const SMALL: f64 = 1e-10;
 
 impl Quadratic {
-    /// Minimises the cost within the ellipsoid `sum (x_k / axes_k)^2 <= radius^2` (MuJoCo's `mju_QCQP`): no force where the matrix is
-    /// hardly positive definite.
+    /// Minimises the cost within the ellipsoid `sum (x_k / axes_k)^2 <= radius^2` (MuJoCo's `mju_QCQP`): no force if the matrix is barely positive
+    /// definite.
     pub fn within_ellipsoid(&self, axes: &[f64; DIRECTIONS], radius: f64) -> [f64; DIRECTIONS] {
         let n = self.n;
         // scaled so that the ellipsoid is a ball

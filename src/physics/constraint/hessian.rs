@@ -24,15 +24,15 @@ pub(super) struct Hessian {
     words: usize,
     /// Pattern as bits, while it is found.
     bits: Vec<u64>,
-    /// Those before elimination that the pattern is of.
+    /// The pattern before elimination.
     analysed: Vec<u64>,
     pattern: Pattern,
-    /// Place of tile (i, j) at `i rows + j`; only those of the pattern are valid.
+    /// Place of tile (i, j) at `i rows + j`; only tiles of the pattern are valid.
     place: Vec<u32>,
     /// Rows eliminated into each row: the first, and the next of the same.
     child: Vec<u32>,
     sibling: Vec<u32>,
-    /// First tile of each row's update: the lower triangle over its columns but the diagonal.
+    /// First tile of each row's update: the lower triangle over its columns except the diagonal.
     update_adr: Vec<usize>,
     /// The matrix, its factor, the inverse of the factor's diagonal, the updates.
     h: Vec<Tile>,
@@ -47,7 +47,7 @@ pub(super) struct Hessian {
     weighted: Vec<Lanes>,
 }
 
-/// Memory is reserved for islands of up to this many degrees of freedom, as some of it grows with their square.
+/// Memory is reserved for islands of up to this many degrees of freedom, because some of it grows with their square.
 const MANY: usize = 512;
 /// No row.
 const NONE: u32 = u32::MAX;
@@ -85,7 +85,7 @@ impl Hessian {
         self.factorise();
     }
 
-    /// Marks the rows whose constraints have other curvatures than at the last call.
+    /// Marks the rows whose constraints have changed their curvature since the last call.
     #[inline(always)]
     fn find_changes(&mut self, island: &Island) {
         let first = self.weight.is_empty() && self.zone.is_empty();
@@ -216,7 +216,7 @@ impl Hessian {
         );
     }
 
-    /// Does so for a Jacobian over the columns `cols`, in an island of `n` tiles.
+    /// Does the same for a Jacobian over the columns `cols`, in an island of `n` tiles.
     #[inline(always)]
     fn add_weighted_tiles(&mut self, n: usize, cols: &[u32], jac: &[Lanes], dim: usize) {
         for (a, (&i, rows)) in cols.iter().zip(jac.chunks_exact(dim)).enumerate() {

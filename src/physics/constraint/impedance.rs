@@ -17,11 +17,11 @@ pub struct Impedance {
 const MINIMP: f64 = 0.0001;
 const MAXIMP: f64 = 0.9999;
 
-/// The values that hold where a `solref` mixes the two ways of giving it.
+/// The values used if a `solref` mixes its two forms.
 const DEFAULT_SOLREF: [f64; 2] = [0.02, 1.0];
 
-/// Returns whether a `solref` is neither zero nor mixed, that is, positive and not positive: MuJoCo treats such a
-/// `solreffriction` as not given.
+/// Returns whether a `solref` is neither zero nor mixed (one number positive and the other not): MuJoCo treats a zero or mixed `solreffriction` as
+/// not given.
 #[inline(always)]
 pub(super) fn is_solref(solref: [f64; 2]) -> bool {
     solref != [0.0; 2] && (solref[0] > 0.0) == (solref[1] > 0.0)
@@ -95,8 +95,7 @@ fn pow(x: f64, p: f64) -> f64 {
     }
 }
 
-/// Returns `x^1.5`, correctly rounded, from `sqrt(x)` in twice the precision; nothing where that is not enough to decide,
-/// or where `x` is far from 1.
+/// Returns `x^1.5`, correctly rounded, from `sqrt(x)` in twice the precision; `None` if that is not precise enough, or if `x` is far from 1.
 fn pow_three_halves(x: f64) -> Option<f64> {
     if !(1e-100..1e100).contains(&x) {
         return None;

@@ -11,7 +11,7 @@ use crate::vectorize::vectorize;
 
 mod start;
 
-/// The cost along the search direction, where the search starts.
+/// The cost along the search direction, at the start of the search.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct AlongSearch {
     /// First and second derivative of the inertial part.
@@ -38,7 +38,7 @@ pub(super) struct Island {
     /// Number of leading entries of `scalar_rows` that hold dry friction, one for each tile: none or all of them.
     pub(super) friction_tiles: usize,
     pub(super) scalar_rows: Vec<ScalarRows>,
-    /// Rows on one degree of freedom, which stand after dry friction.
+    /// Rows on one degree of freedom, which come after dry friction.
     pub(super) singles: Vec<SingleDofRow>,
     /// Rows on several degrees of freedom: first row in `scalar_rows`, Jacobian.
     pub(super) several: Vec<(usize, Jacobian)>,
@@ -358,7 +358,7 @@ impl Island {
         squares.sum::<f64>().sqrt()
     }
 
-    /// Computes the sums along the search direction that the line search starts from.
+    /// Computes the sums along the search direction from which the line search starts.
     #[inline(always)]
     pub(super) fn along_search(&self) -> AlongSearch {
         let mut sums = [[0.0; 4]; 4];
@@ -387,7 +387,7 @@ impl Island {
         }
     }
 
-    /// Writes acceleration, constraint force and the forces of the rows back.
+    /// Writes back the acceleration, the constraint force and the forces of the rows.
     #[inline(always)]
     pub(super) fn store(&self, topology: &Topology, efc: &mut Efc, s: &mut State) {
         for &(t, _) in &self.trees {

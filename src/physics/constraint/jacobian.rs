@@ -15,7 +15,7 @@ pub(super) struct SingleDofRow {
     pub(super) value: f64,
 }
 
-/// Jacobian of some rows over the tiles that they have entries in.
+/// Jacobian of some rows over the tiles in which they have entries.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Jacobian {
     /// Number of rows.
@@ -52,7 +52,7 @@ pub(super) fn product<const N: usize>(cols: &[u32], jac: &[Lanes], j: &Jacobian,
     out
 }
 
-/// Computes `N` rows of `J x`, from `first` on.
+/// Computes `N` rows of `J x`, starting at `first`.
 #[inline(always)]
 fn some_products<const N: usize>(cols: &[u32], jac: &[Lanes], j: &Jacobian, first: usize, x: &[Lanes]) -> [f64; N] {
     let mut sums = [[0.0; 4]; N];

@@ -36,7 +36,7 @@ pub fn joint_limits(rows: &mut RowAppender, s: &State) {
     }
 }
 
-/// Appends a row if a ball joint is within the margin of the angle that it may turn by, about any axis.
+/// Appends a row if the rotation of a ball joint about any axis is within the margin of its limit.
 #[inline(never)]
 fn ball_limit(rows: &mut RowAppender, s: &State, j: usize) {
     let model = rows.model;

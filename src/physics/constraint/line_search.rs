@@ -31,7 +31,7 @@ impl LineSearch<'_> {
         (g, h)
     }
 
-    /// Computes the cost at `alpha`, less that of the inertia at 0.
+    /// Computes the cost at `alpha`, minus that of the inertia at 0.
     pub(super) fn cost(&self, alpha: f64) -> f64 {
         let rows = self.island.scalar_rows.iter().map(|q| q.cost(alpha));
         let cones = self.island.cones.iter().map(|(c, _)| c.cost(alpha));

@@ -42,7 +42,7 @@ pub use weld::{connected_points, weld_points};
 use crate::tiles::Lanes;
 use crate::topology::Topology;
 
-/// The type of a constraint row: what it constrains, as in MuJoCo's `efc_type`. Rows stand in this order.
+/// The type of a constraint row: what it constrains, as in MuJoCo's `efc_type`. Rows are in this order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Default)]
 pub enum ConstraintType {
     /// An equality: the force may have either sign.
@@ -71,7 +71,7 @@ impl ConstraintType {
     }
 }
 
-/// Most rows of a block: the edges of a pyramid with six dimensions.
+/// Maximum number of rows of a block: the edges of a pyramid with six dimensions.
 pub const MAX_ROWS: usize = 10;
 
 /// Rows that belong together and share their columns.
@@ -115,7 +115,7 @@ pub struct Efc {
     pub blocks: Vec<Block>,
     /// Tiles of degrees of freedom ([`Topology::tiles`]) in which each block has entries, ascending.
     pub cols: Vec<u32>,
-    /// Friction of contacts. It is kept apart from blocks, which are written in each step and mostly have one degree of freedom.
+    /// Friction of contacts. It is stored separately from blocks, which are written in each step and mostly have one degree of freedom.
     pub cones: Vec<ConeShape>,
     /// Jacobian values of each block: for each of its tiles, `dim` rows.
     pub jac: Vec<Lanes>,
@@ -163,7 +163,7 @@ impl Efc {
         }
     }
 
-    /// Drops all rows, keeps the memory.
+    /// Drops all rows but keeps the memory.
     pub fn clear(&mut self) {
         self.blocks.clear();
         self.cones.clear();

@@ -23,9 +23,9 @@ pub struct NewtonSolver {
     conjugate: ConjugateGradient,
     /// Union-find over trees.
     parent: Vec<usize>,
-    /// The next tree of the same island, ascending; the number of trees after the last.
+    /// The next tree of the same island, ascending; for the last one, the number of trees.
     next: Vec<usize>,
-    /// Trees of the island at hand.
+    /// Trees of the current island.
     trees: Vec<usize>,
     /// Island (first tree) of each block.
     block_tree: Vec<u32>,
@@ -245,7 +245,7 @@ impl NewtonSolver {
     }
 }
 
-/// Returns how far to go along the search direction of an island.
+/// Returns the step length along the search direction of an island.
 #[inline(always)]
 fn step_length(model: &Model, island: &Island, along: &AlongSearch, scale: f64) -> f64 {
     let line = LineSearch {
@@ -265,10 +265,10 @@ fn step_length(model: &Model, island: &Island, along: &AlongSearch, scale: f64) 
     }
 }
 
-/// Part of the constraint forces by which they may miss the balance where the solver stops because the cost is level.
+/// Share of the constraint forces by which the balance may be violated if the solver stops because the cost is flat.
 const BALANCED: f64 = 1e-6;
 
-/// Computes the forces of a contact or weld that nothing can move: those of its rows at zero acceleration.
+/// Computes the forces of a contact or weld that nothing can move: the forces of its rows at zero acceleration.
 fn push_alone(b: &Block, efc: &mut Efc) {
     if b.kind == ConstraintType::ContactElliptic {
         let mut cone = FrictionCone::new(b, efc);
@@ -287,12 +287,11 @@ fn push_alone(b: &Block, efc: &mut Efc) {
     }
 }
 
-/// A limit of iterations below this counts as a wish to stop early. Newton's method and its line search hardly ever need so many.
+/// A limit of iterations below this counts as a request to stop early. Newton's method and its line search almost never need so many.
 const FEW_ITERATIONS: usize = 20;
 
-/// Returns whether a model may stop the solver before it converges, as conjugate gradients do. Then all trees are solved as one island,
-/// those without constraints too, as they start from the last acceleration, and searched as in MuJoCo, so the solver stops where MuJoCo
-/// stops.
+/// Returns whether a model may stop the solver before it converges, as conjugate gradients do. Then all trees are solved as one island, including
+/// those without constraints, which start from the last acceleration. The line search is MuJoCo's, so the solver stops where MuJoCo stops.
 fn cut_off(model: &Model) -> bool {
     model.opt.solver == SolverType::Cg
         || model.opt.iterations < FEW_ITERATIONS

@@ -17,7 +17,7 @@ struct LinePoint {
 }
 
 impl LinePoint {
-    /// Returns where Newton's method goes from here.
+    /// Returns the next point of Newton's method.
     fn newton(&self) -> f64 {
         self.alpha - self.slope / self.curvature
     }
@@ -41,8 +41,8 @@ impl PointEvaluator<'_> {
         }
     }
 
-    /// Moves an end of the bracket to the candidates on its side that are flatter, and `next` to where Newton's method goes
-    /// from there. Returns whether it moved.
+    /// Moves an end of the bracket to the candidates on its side that are flatter, and `next` to the following point of Newton's method. Returns
+    /// whether it moved.
     fn narrow(&mut self, end: &mut LinePoint, candidates: &[LinePoint; 3], next: &mut LinePoint) -> bool {
         let mut moved = false;
         for c in candidates {
@@ -61,7 +61,7 @@ impl PointEvaluator<'_> {
 
 impl LineSearch<'_> {
     /// Finds a step length with a slope below `tolerance` in at most about `iterations` evaluations (MuJoCo's `PrimalSearch`);
-    /// 0 if nothing better than standing still was found.
+    /// 0 if no point was better than the start.
     pub(super) fn follow(&self, tolerance: f64, iterations: usize) -> f64 {
         let mut probe = PointEvaluator { line: self, count: 0 };
         let start = probe.at(0.0);

@@ -14,7 +14,7 @@ use crate::state::State;
 use crate::tiles::Lanes;
 use crate::topology::Topology;
 
-/// Builds the constraint rows. Keeps those of dry friction of joints, which are always the same.
+/// Builds the constraint rows. Keeps the rows of joints' dry friction, which never change.
 #[derive(Clone, Debug, Default)]
 pub struct RowBuilder {
     friction: Efc,
@@ -25,7 +25,7 @@ pub struct RowBuilder {
 }
 
 impl RowBuilder {
-    /// Prepares the rows of `model` that are always the same.
+    /// Prepares the rows of `model` that never change.
     pub fn new(model: &Model, topology: &Topology) -> Self {
         let mut friction = Efc::default();
         let mut rows = RowAppender {
@@ -132,7 +132,7 @@ impl RowBuilder {
         }
     }
 
-    /// Computes the velocities of all rows but those of dry friction; `vel` holds the damping of each until here.
+    /// Computes the velocities of all rows except those of dry friction; until now `vel` holds the damping of each.
     #[inline(always)]
     fn add_velocities(&self, efc: &mut Efc, s: &State) {
         efc.force.resize(efc.pos.len(), 0.0);

@@ -23,7 +23,7 @@ pub(super) struct ScalarRows {
     /// `J` times the search direction.
     pub(super) jv: Lanes,
     pub(super) force: Lanes,
-    /// Curvature: `d` between the bounds, else 0.
+    /// Curvature: `d` between the bounds, otherwise 0.
     pub(super) weight: Lanes,
     /// Rows of [`Efc`].
     pub(super) row: [u32; 4],
@@ -75,7 +75,7 @@ impl ScalarRows {
         cost
     }
 
-    /// Returns a value where a clamped pull is strictly between the bounds of row `k`, else 0.
+    /// Returns a value if a clamped pull is strictly between the bounds of row `k`, otherwise 0.
     #[inline(always)]
     fn between(&self, k: usize, clamped: f64, value: f64) -> f64 {
         // of the clamped pull, not of the pull: of comparisons shared with `clamp`, LLVM makes branches for single rows,

@@ -4,8 +4,8 @@ use super::ConstraintType;
 use super::append::{RowAppender, RowParameters};
 use crate::state::State;
 
-/// Starts a block with one row on the lengths of tendons, each with a scale. Returns whether there is one: as with equalities without
-/// effect, MuJoCo drops a row that nothing moves, where the Jacobian is dense.
+/// Starts a block with one row on the lengths of tendons, each with a scale. Returns whether there is one: if the Jacobian is dense, MuJoCo drops a
+/// row that nothing moves, as with equalities without effect.
 pub fn tendons(
     rows: &mut RowAppender,
     s: &State,

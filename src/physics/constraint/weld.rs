@@ -1,4 +1,4 @@
-//! The points of a connection; the pose error of a weld, and how its rows act.
+//! The points of a connection, the pose error of a weld, and the effect of its rows.
 
 use crate::math::*;
 use crate::model::{EqualityKind, Model};

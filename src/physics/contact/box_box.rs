@@ -109,7 +109,7 @@ impl AxisSearch<'_> {
         Some(())
     }
 
-    /// Tests the edges of one box across those of the other, with a small penalty where they are no better than a face;
+    /// Tests the edges of one box across those of the other, with a small penalty, so that they replace a face only if they are clearly better;
     /// `None` if a pair separates the boxes.
     #[inline(always)]
     fn edges(&mut self) -> Option<()> {

@@ -20,7 +20,7 @@ struct Collector<'a> {
 }
 
 impl Collector<'_> {
-    /// Notes a point of the face frame; it is taken to the world at the end.
+    /// Notes a point of the face frame; it is transformed to the world frame at the end.
     #[inline(always)]
     fn push(&mut self, pos: Vec3, dist: f64) {
         self.points.push(BoxPoint { dist, pos });

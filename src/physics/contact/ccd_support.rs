@@ -14,7 +14,7 @@ use crate::model::GeomType;
 pub(super) struct CcdSupport<'a> {
     geom: &'a PlacedGeom<'a>,
     margin: f64,
-    /// The corner of a mesh's hull that was found last, from which the next is looked for.
+    /// The last corner found on a mesh's hull, from which the next search starts.
     corner: Cell<usize>,
 }
 
@@ -25,7 +25,7 @@ impl<'a> CcdSupport<'a> {
         CcdSupport { geom, margin, corner }
     }
 
-    /// Returns the corner of its hull that was found last.
+    /// Returns the last corner found on its hull.
     pub(super) fn corner(&self) -> usize {
         self.corner.get()
     }
@@ -39,7 +39,7 @@ impl<'a> CcdSupport<'a> {
     }
 }
 
-/// Returns the sign of a number, of either zero zero: across an axis the middle of a side is the farthest point.
+/// Returns the sign of a number, zero for either zero: across an axis, the middle of a side is the farthest point.
 fn sign(x: f64) -> f64 {
     match x {
         x if x > 0.0 => 1.0,
@@ -78,8 +78,8 @@ impl Support for CcdSupport<'_> {
     }
 }
 
-/// Finds the contact of two convex geoms by MPR. The searches for farthest points start at `corners` of the two hulls, and leave there the
-/// last ones found.
+/// Finds the contact of two convex geoms by MPR. The searches for farthest points start at `corners` of the two hulls and store the last ones found
+/// there.
 pub(super) fn convex(
     a: &PlacedGeom,
     b: &PlacedGeom,

@@ -1,4 +1,4 @@
-//! Pairs without a formula of their own, by GJK and EPA: ellipsoids and meshes with everything but planes, capsules with cylinders, cylinders with
+//! Pairs without their own formula, by GJK and EPA: ellipsoids and meshes with everything but planes, capsules with cylinders, cylinders with
 //! cylinders and cylinders with boxes.
 
 use super::epa::{Overlap, epa};
@@ -77,7 +77,7 @@ pub(super) fn of_shapes(
     find.deep(a, b)
 }
 
-/// Returns a geom that has the centre of a shape and nothing else of it.
+/// Returns a geom that has only the centre of a shape.
 fn stand_in(pos: Vec3) -> PlacedGeom<'static> {
     PlacedGeom {
         kind: GeomType::Sphere,
@@ -168,8 +168,7 @@ enum CoreContact {
     Unknown,
 }
 
-/// Finds the contact of a sphere or capsule whose core is outside the other shape: the distance from the core less the
-/// radius.
+/// Finds the contact of a sphere or capsule whose core is outside the other shape: the distance from the core minus the radius.
 fn shallow<A: Support, B: Support>(
     core: &MinkowskiDifference<A, B>,
     a: &PlacedGeom,
@@ -232,7 +231,7 @@ fn touch(dist: f64, point_a: Vec3, point_b: Vec3, margin: f64) -> Option<BareCon
     })
 }
 
-/// Stands in for EPA: the least overlap along the axes of both geoms and the line of centres. The position is halfway
+/// Replaces EPA: the least overlap along the axes of both geoms and the line of centres. The position is halfway
 /// between the two support planes, next to the middle of the centres.
 fn least_overlap_of_axes<A: Support, B: Support>(
     shape: &MinkowskiDifference<A, B>,

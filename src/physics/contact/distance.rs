@@ -1,4 +1,4 @@
-//! The distance of two geoms, apart or in each other, and the points of both where it is measured (MuJoCo 3.3.0's `mj_geomDistance`).
+//! The distance between two separate or overlapping geoms, and the points between which it is measured (MuJoCo 3.3.0's `mj_geomDistance`).
 
 use super::epa::epa;
 use super::gjk::{GjkLimits, Simplex, gjk};

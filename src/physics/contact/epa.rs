@@ -67,7 +67,7 @@ impl<A: Support, B: Support> PolytopeExpansion<'_, A, B> {
         self.polytope.add_vertex(vertex)
     }
 
-    /// Adds the start faces and lists them, or stops at the first one that holds the origin and gives its vertices.
+    /// Adds the start faces and lists them, or stops at the first one that contains the origin and returns its vertices.
     fn add_start_faces(&mut self, faces: &[StartFace]) -> Result<(), [u16; 3]> {
         for &(vertices, neighbours) in faces {
             // a face through the origin has no foot to expand along, and its distance of 0 would end the search as a
@@ -223,7 +223,7 @@ impl<A: Support, B: Support> PolytopeExpansion<'_, A, B> {
         Some(())
     }
 
-    /// Adds supports beyond the nearest face until that brings nothing; gives the nearest face.
+    /// Adds supports beyond the nearest face until there is no improvement; returns the nearest face.
     fn expand(&mut self, tolerance: f64, iterations: usize) -> Option<u16> {
         let mut upper = UNBOUNDED;
         let mut nearest: Option<u16> = None;
@@ -282,8 +282,8 @@ impl<A: Support, B: Support> PolytopeExpansion<'_, A, B> {
         nearest
     }
 
-    /// Adds faces from the new vertex to each edge of the horizon; those that cannot be the nearest any more are not listed.
-    /// `None` if a face holds the origin.
+    /// Adds faces from the new vertex to each edge of the horizon; those that can no longer be the nearest are not listed. `None` if a face contains
+    /// the origin.
     #[inline(always)]
     fn add_fan(&mut self, apex: u16, lower: f64, upper: f64) -> Option<()> {
         let first = self.polytope.faces.len();

@@ -7,13 +7,13 @@ use super::{PlacedGeom, add_scaled, dot, sub};
 use crate::math::{MINVAL, Vec3, add, cross, mat_t_vec, mat_vec, norm, scale, unit};
 use crate::model::{GeomType, Mesh, MeshPolygons};
 
-/// Cosine from which on two faces are parallel, and sine up to which an edge is parallel to a face: of 0.0016 rad (`mjFACE_TOL`,
+/// Cosine from which two faces count as parallel, and sine up to which an edge counts as parallel to a face: those of 0.0016 rad (`mjFACE_TOL`,
 /// `mjEDGE_TOL`).
 const PARALLEL_FACES: f64 = 0.99999872;
 const PARALLEL_EDGE: f64 = 0.00159999931;
-/// The most corners of a polygon, and polygons of a vertex, that count (`mjMAX_POLYVERT`).
+/// Maximum number of corners of a polygon, and of polygons of a vertex (`mjMAX_POLYVERT`).
 const MAX_CORNERS: usize = 150;
-/// The most contacts. Of more corners, those of the greatest quadrilateral are kept.
+/// Maximum number of contacts. If there are more corners, those of the greatest quadrilateral are kept.
 const MAX_CONTACTS: usize = 4;
 
 /// Buffers for finding the faces and edges of a multi-contact (multiccd) search.
@@ -123,7 +123,7 @@ fn opposite(ours: &[Candidate], theirs: &[Candidate]) -> Option<(usize, usize)> 
     pairs(ours.len(), theirs.len()).find(|&(i, j)| dot(ours[i].along, theirs[j].along) < -PARALLEL_FACES)
 }
 
-/// Finds the first face, and then the first edge, that are parallel.
+/// Finds the first face that is parallel to an edge, and the first such edge.
 fn along(edges: &[Candidate], faces: &[Candidate]) -> Option<(usize, usize)> {
     let found =
         pairs(faces.len(), edges.len()).find(|&(j, i)| dot(edges[i].along, faces[j].along).abs() < PARALLEL_EDGE);
@@ -181,8 +181,8 @@ impl MulticcdScratch {
     }
 }
 
-/// Finds four corners of a convex polygon with a great area between them. The first corner goes around once; the others advance as long as the
-/// area grows.
+/// Finds four corners of a convex polygon with a great area between them. The first corner goes around the polygon once; the others advance as long
+/// as the area grows.
 fn greatest(polygon: &[Vec3]) -> [usize; 4] {
     let count = polygon.len();
     let next = |k: usize| if k + 1 == count { 0 } else { k + 1 };
@@ -240,7 +240,7 @@ struct Polyhedron<'a> {
 }
 
 impl<'a> Polyhedron<'a> {
-    /// Creates one from a box, or from a mesh with polygons.
+    /// Creates a polytope from a box, or from a mesh with polygons.
     fn new(geom: &'a PlacedGeom<'a>) -> Option<Self> {
         let mesh = match geom.kind {
             GeomType::Box => None,
@@ -261,7 +261,7 @@ impl<'a> Polyhedron<'a> {
         self.place(mesh.vert[vertex as usize].map(f64::from))
     }
 
-    /// Returns which vertex a support is: of a box the bits say on which side of x, y and z.
+    /// Returns the vertex of a support; for a box, its bits are the sides along x, y and z.
     fn vertex(&self, point: Vec3) -> usize {
         match self.mesh {
             None => {

@@ -1,4 +1,4 @@
-//! Normals of round shapes, where those that are found have errors: prisms of a height field meet them at their edges, and MPR stops at a
+//! Normals of round shapes, for contacts whose normals have errors: prisms of a height field meet them at their edges, and MPR stops at a
 //! portal near their surface.
 
 use super::{PlacedGeom, sub};
@@ -9,8 +9,8 @@ use crate::model::GeomType;
 const ITERATIONS: usize = 30;
 const TOLERANCE: f64 = 1e-6;
 
-/// Returns the normal of a contact, which points to the second geom, at the surfaces of those geoms that are round there: between both where
-/// both are; else `normal` (MuJoCo's `mjc_fixNormal`).
+/// Returns the normal of a contact, which points to the second geom, at the surface of a geom that is round there, or between both normals if both
+/// are round; otherwise `normal` (MuJoCo's `mjc_fixNormal`).
 pub(super) fn fixed(a: &PlacedGeom, b: &PlacedGeom, pos: Vec3, normal: Vec3) -> Vec3 {
     match (outward(a, pos, normal), outward(b, pos, scale(normal, -1.0))) {
         (Some(first), Some(second)) => unit(sub(first, second)).0,
@@ -20,7 +20,7 @@ pub(super) fn fixed(a: &PlacedGeom, b: &PlacedGeom, pos: Vec3, normal: Vec3) -> 
     }
 }
 
-/// Returns the outward normal of a geom near a point where it is round; `own` is the one that was found.
+/// Returns the outward normal of a geom near a point where it is round; `own` is the normal that was found.
 fn outward(geom: &PlacedGeom, pos: Vec3, own: Vec3) -> Option<Vec3> {
     let at = mat_t_vec(geom.mat, sub(pos, geom.pos));
     let found = round(geom, at, mat_t_vec(geom.mat, own))?;

@@ -10,7 +10,7 @@ pub fn from_normal(normal: Vec3) -> Mat3 {
     complete(x, default_hint(x))
 }
 
-/// Returns a frame as [`from_normal`] does, of a normal of unit length.
+/// Returns a frame as [`from_normal`] does, for a normal of unit length.
 pub(super) fn of_unit(normal: Vec3) -> Mat3 {
     complete(normal, default_hint(normal))
 }

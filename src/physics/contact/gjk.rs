@@ -17,7 +17,7 @@ pub(super) struct Simplex {
 /// The result of GJK.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct GjkResult {
-    /// Distance, m: 0 when the shapes overlap, [`MAXVAL`] when they are known to be apart or beyond the cutoff.
+    /// Distance, m: 0 if the shapes overlap, [`MAXVAL`] if they are known to be apart or beyond the cutoff.
     pub(super) distance: f64,
     /// Nearest point of the first shape.
     pub(super) a: Vec3,
@@ -32,7 +32,7 @@ pub(super) struct GjkLimits {
     pub(super) tolerance: f64,
     /// Greatest number of iterations.
     pub(super) iterations: usize,
-    /// Distance from which on the exact value is not needed, m; at 0 the question is only whether the shapes overlap.
+    /// Distance from which the exact value is not needed, m; at 0 the search only decides whether the shapes overlap.
     pub(super) cutoff: f64,
     /// Whether to stop at once, with nothing known, when the centres coincide.
     pub(super) stop_at_same_centre: bool,
@@ -94,8 +94,7 @@ struct GjkSearch {
 }
 
 impl GjkSearch {
-    /// Searches until the nearest point is found or a tetrahedron or plane tells enough; the latter two leave the nearest
-    /// point unknown.
+    /// Searches until the nearest point is found, or until a tetrahedron or plane decides the question and leaves the nearest point unknown.
     #[inline(always)]
     fn run<A: Support, B: Support>(
         &mut self,
@@ -258,7 +257,7 @@ enum OriginEnclosure {
     Unknown,
 }
 
-/// Moves a tetrahedron, vertex by vertex, until it holds the origin or a vertex shows that none can. The simplex is
+/// Moves a tetrahedron, vertex by vertex, until it contains the origin or a vertex shows that none can. The simplex is
 /// changed only in the first case. Counts in `iteration`.
 fn enclose_origin<A: Support, B: Support>(
     shape: &MinkowskiDifference<A, B>,

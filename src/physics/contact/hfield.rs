@@ -1,4 +1,4 @@
-//! Height fields: each half of a square of their grid is a prism, which touches as a convex shape does.
+//! Height fields: each half of a grid square is a prism, which touches like a convex shape.
 
 use super::ccd_support::CcdSupport;
 use super::epa::epa;
@@ -12,7 +12,7 @@ use super::{BareContact, ContactOptions, ContactPoint, MAXVAL, PlacedGeom, add_s
 use crate::math::{Mat3, Vec3, add, mat_mul, mat_t_vec, mat_vec, scale, transpose, unit};
 use crate::model::{GeomType, HField};
 
-/// The most contacts of a height field and another geom (MuJoCo's `mjMAXCONPAIR`).
+/// Maximum number of contacts of a height field and another geom (MuJoCo's `mjMAXCONPAIR`).
 const MOST: usize = 50;
 
 /// A prism between the base of a height field and a triangle of its surface: three lower corners, then the three above them.

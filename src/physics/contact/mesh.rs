@@ -10,7 +10,7 @@ use crate::model::{Mesh, MeshHull};
 
 /// Meshes of fewer vertices are searched vertex by vertex (MuJoCo's `mjMESH_HILLCLIMB_MIN`).
 const CLIMBED: usize = 10;
-/// The most contacts of a plane and a mesh.
+/// Maximum number of contacts of a plane and a mesh.
 const PLANE_CONTACTS: usize = 3;
 /// Least distance of the other contacts from the first, in bounding radii.
 const PLANE_SPREAD: f64 = 0.3;
@@ -21,7 +21,7 @@ fn height(dir: Vec3, v: [f32; 3]) -> f64 {
     dir[0] * f64::from(v[0]) + dir[1] * f64::from(v[1]) + dir[2] * f64::from(v[2])
 }
 
-/// A mesh, grown by half the margin, which remembers its last farthest point: the next is mostly near.
+/// A mesh, grown by half the margin, which stores its last farthest point, because the next is usually near.
 pub(super) struct MeshShape<'a> {
     pose: Pose<'a>,
     mesh: &'a Mesh,
@@ -40,7 +40,7 @@ impl<'a> MeshShape<'a> {
         }
     }
 
-    /// Searches all vertices; the last one found wins over others at the same height.
+    /// Searches all vertices; the last one found takes precedence over others at the same height.
     fn search(&self, dir: Vec3) -> usize {
         let mut best = self.last.get().unwrap_or(0);
         let mut highest = match self.last.get() {
@@ -116,8 +116,8 @@ impl Support for MeshShape<'_> {
     }
 }
 
-/// The farthest vertex in a direction of the mesh's frame, by the search that MuJoCo uses outside of its own convex routine: the
-/// corner of the hull, where there is one, and the vertex. The search goes over the hull, however small it is, from the corner `start`.
+/// The farthest vertex in a direction of the mesh's frame, by the search that MuJoCo uses outside its own convex routine: the corner of the hull, if
+/// there is one, and the vertex. The search runs over the hull, even a small one, from the corner `start`.
 pub(super) fn climb_from(mesh: &Mesh, start: usize, dir: Vec3) -> (Option<usize>, usize) {
     if let Some(hull) = &mesh.hull {
         let mut best = start.min(hull.vert.len().saturating_sub(1));
@@ -166,8 +166,8 @@ pub(super) fn plane_mesh(a: &PlacedGeom, b: &PlacedGeom, mesh: &Mesh, margin: f6
     }
 }
 
-/// Finds the contacts that MuJoCo adds to that of a plane and an ellipsoid which was fitted to a mesh without a hull: those of
-/// the vertices, as if they were at the ellipsoid.
+/// Finds the contacts that MuJoCo adds to that of a plane and an ellipsoid which was fitted to a mesh without a hull: contacts of the vertices, as if
+/// they were on the ellipsoid.
 pub(super) fn plane_fitted(a: &PlacedGeom, b: &PlacedGeom, mesh: &Mesh, margin: f64, out: &mut Vec<ContactPoint>) {
     if mesh.hull.is_none() {
         let radius = b.size.iter().fold(0.0, |most: f64, &half| most.max(half));

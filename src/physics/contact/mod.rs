@@ -86,9 +86,9 @@ pub struct PlacedGeom<'a> {
     pub pos: Vec3,
     /// Orientation; the columns are the local axes.
     pub mat: &'a Mat3,
-    /// The mesh, of a geom that is one, which without it touches nothing, or of an ellipsoid that was fitted to one.
+    /// The mesh of a mesh geom, which touches nothing without it, or of an ellipsoid that was fitted to a mesh.
     pub mesh: Option<&'a Mesh>,
-    /// The height field, of a geom that is one: without it the geom touches nothing.
+    /// The height field of such a geom, which touches nothing without it.
     pub hfield: Option<&'a HField>,
 }
 
@@ -142,7 +142,7 @@ pub struct ContactOptions {
     pub ccd_tolerance: f64,
     /// Greatest number of iterations of GJK and of EPA (MuJoCo's `ccd_iterations`).
     pub ccd_iterations: usize,
-    /// Whether convex pairs are searched by GJK and EPA, as MuJoCo does by default, or else by MPR, as libccd does (MuJoCo's flag `nativeccd`).
+    /// Whether contacts of convex pairs are found by GJK and EPA, MuJoCo's default, or by MPR, as in libccd (MuJoCo's flag `nativeccd`).
     pub nativeccd: bool,
     /// Whether convex pairs may have several contacts (MuJoCo's flag `multiccd`).
     pub multiccd: bool,

@@ -34,7 +34,7 @@ pub(super) struct MprLimits {
     pub(super) iterations: usize,
 }
 
-/// Finds the overlap of two shapes with a point inside of either; `None` where they are apart, or touch without a direction.
+/// Finds the overlap of two shapes, given a point inside each; `None` if they are apart, or touch without a direction.
 pub(super) fn mpr(
     first: (&dyn Support, Vec3),
     second: (&dyn Support, Vec3),
@@ -96,7 +96,7 @@ enum PortalStart {
     Outside,
     /// The first support point is on the ray, so no portal is needed.
     OnRay,
-    /// The ray goes through the portal.
+    /// The ray passes through the portal.
     Through,
 }
 
@@ -131,7 +131,7 @@ impl Portal<'_> {
         direction(cross(sub(a, inside), sub(b, inside)))
     }
 
-    /// Looks for a portal that the ray goes through.
+    /// Searches for a portal that the ray passes through.
     fn discover(&mut self) -> PortalStart {
         let inside = self.corners[0].point;
         if !self.reach(1, direction(scale(inside, -1.0))) {
@@ -166,7 +166,7 @@ impl Portal<'_> {
         PortalStart::Outside
     }
 
-    /// Moves the portal outwards until the origin is behind it; returns whether it ever is.
+    /// Moves the portal outwards until the origin is behind it; returns whether that succeeds.
     fn passes_origin(&mut self, tolerance: f64) -> bool {
         for _ in 0..ENDLESS {
             let dir = self.outwards();
@@ -208,7 +208,7 @@ impl Portal<'_> {
         })
     }
 
-    /// Measures along the ray, where the first corner is on it: that is where it leaves the difference.
+    /// Measures along the ray if the first corner is on it, because the ray leaves the difference there.
     fn on_ray(&self) -> Option<Penetration> {
         let corner = &self.corners[1];
         // a corner at the origin: the shapes touch, in no direction
@@ -222,7 +222,7 @@ impl Portal<'_> {
         })
     }
 
-    /// Returns whether a support in the direction of the portal is hardly farther than the portal.
+    /// Returns whether a support in the direction of the portal is barely farther than the portal.
     fn on_surface(&self, vertex: &Vertex, dir: Vec3, tolerance: f64) -> bool {
         let height = dot(vertex.point, dir);
         let [_, a, b, c] = self.points().map(|point| height - dot(point, dir));

@@ -54,7 +54,7 @@ fn between(point: Vec3, step: Vec3, dist: f64) -> Option<BareContact> {
     })
 }
 
-/// Looks for further contacts: tilts the geoms against each other about the two tangents of the first contact, to either side, and adds
+/// Searches for further contacts: tilts the geoms against each other about the two tangents of the first contact, to either side, and adds
 /// contacts at other places, with the distance of the first.
 #[cold]
 fn tilted(
@@ -102,7 +102,7 @@ fn tilted(
     }
 }
 
-/// Returns the pose of a geom that is turned about a point.
+/// Returns the pose of a geom after a rotation about a point.
 fn turned(geom: &PlacedGeom, about: Vec3, turn: &Mat3) -> (Vec3, Mat3) {
     let arm = sub(about, geom.pos);
     let moved = sub(mat_vec(turn, arm), arm);

@@ -89,7 +89,7 @@ impl Polytope {
         self.open.clear();
     }
 
-    /// Appends a vertex and gives its number.
+    /// Appends a vertex and returns its number.
     #[inline(always)]
     pub(super) fn add_vertex(&mut self, vertex: Vertex) -> u16 {
         self.vertices.push(vertex);
@@ -108,7 +108,7 @@ impl Polytope {
         self.vertices[vertex as usize].point
     }
 
-    /// Appends a face and gives its distance, 0 when its vertices are on a line.
+    /// Appends a face and returns its distance, 0 if its vertices are on a line.
     #[inline(always)]
     pub(super) fn add_face(&mut self, vertices: [u16; 3], neighbours: [u16; 3]) -> f64 {
         let (a, b, c) = (

@@ -144,7 +144,7 @@ pub(super) fn ball_box(centre: Vec3, radius: f64, b: &PlacedGeom, margin: f64) -
     })
 }
 
-/// Keeps a place on its segment. A segment without length gives the quotient of two zeros, which becomes an end.
+/// Clamps a position to its segment. A segment without length gives the quotient of two zeros, which becomes an end.
 #[inline(always)]
 #[allow(clippy::manual_clamp)] // `clamp` would keep that quotient
 fn clamp_to_segment(x: f64) -> f64 {

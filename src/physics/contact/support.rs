@@ -8,14 +8,13 @@ pub(super) trait Support {
     /// Returns the farthest point in the unit direction `dir`.
     fn support(&self, dir: Vec3) -> Vec3;
 
-    /// Returns whether it is the hull of finitely many points: between two such shapes MuJoCo computes the distance to the last
-    /// bit.
+    /// Returns whether it is the hull of finitely many points; between two such shapes MuJoCo computes the distance to the last bit.
     fn discrete(&self) -> bool {
         false
     }
 }
 
-/// Any shape: pairs with meshes share one copy of the routines, as what they do with a shape is little against what the shape does.
+/// Any shape: pairs with meshes share one copy of the routines, because most of the time is spent in the shape.
 impl Support for &dyn Support {
     fn support(&self, dir: Vec3) -> Vec3 {
         (**self).support(dir)
@@ -26,7 +25,7 @@ impl Support for &dyn Support {
     }
 }
 
-/// The pose of a shape, and how far it is grown on all sides.
+/// The pose of a shape, and the distance by which it is grown on all sides.
 #[derive(Clone, Copy)]
 pub(super) struct Pose<'a> {
     pos: Vec3,
@@ -35,7 +34,7 @@ pub(super) struct Pose<'a> {
 }
 
 impl<'a> Pose<'a> {
-    /// Prepares a shape of a pair; half the margin goes to either geom.
+    /// Prepares a shape of a pair; each geom gets half the margin.
     pub(super) fn new(geom: &PlacedGeom<'a>, margin: f64) -> Self {
         Pose {
             pos: geom.pos,
@@ -209,7 +208,7 @@ impl<'a> Ellipsoid<'a> {
 }
 
 impl Support for Ellipsoid<'_> {
-    /// Returns the farthest point: that of the unit ball which the ellipsoid is when its axes are scaled away.
+    /// Returns the farthest point, computed on the unit ball after scaling the axes away.
     #[inline(always)]
     fn support(&self, dir: Vec3) -> Vec3 {
         let local = mat_t_vec(self.pose.mat, dir);

@@ -1,4 +1,4 @@
-//! Tests of conventions that hold for all pairs, and of input that is not sane.
+//! Tests of conventions that hold for all pairs, and of absurd input.
 
 use testkit::Rng;
 
@@ -73,8 +73,8 @@ impl RandomShapes {
         quat_to_mat(quat_normalize(q))
     }
 
-    /// Draws size, position and orientation of two geoms, the second near the first unless they are of one type, and
-    /// replaces a share of the numbers by odd ones.
+    /// Draws size, position and orientation of two geoms, the second near the first unless both are of the same type, and replaces some of the
+    /// numbers by unusual ones.
     fn odd_poses(&mut self, same: bool, share: f64) -> [f64; 30] {
         let mut numbers = [0.0; 30];
         for (at, near) in [(0, 0.0), (15, if same { 0.0 } else { 0.1 })] {

@@ -1,6 +1,6 @@
 //! libccd's comparisons of numbers.
 
-/// The greatest number that libccd takes for zero (`CCD_EPS`).
+/// The greatest number that libccd treats as zero (`CCD_EPS`).
 pub(super) const EPS: f64 = f64::EPSILON;
 
 /// Returns whether a number is zero up to rounding errors.

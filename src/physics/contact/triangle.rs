@@ -1,4 +1,4 @@
-//! The point of a triangle that is nearest to the origin, with the decisions of libccd's `ccdVec3PointTriDist2`, which MPR ends with.
+//! The point of a triangle that is nearest to the origin, with the decisions of libccd's `ccdVec3PointTriDist2`, the last stage of MPR.
 
 use super::tolerance::{equal, is_zero};
 use super::{dot, sub};

@@ -38,7 +38,7 @@ pub fn next(model: &Model, actuator: usize, act: f64, rate: f64) -> f64 {
     }
 }
 
-/// Returns the activation that the force follows from: the present one, or where the actuator acts early the next.
+/// Returns the activation from which the force follows: the current one, or the next one if the actuator acts early.
 pub fn acting(model: &Model, actuator: usize, act: f64, rate: f64) -> f64 {
     if model.actuator_actearly[actuator] {
         next(model, actuator, act, rate)

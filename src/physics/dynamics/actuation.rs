@@ -68,7 +68,7 @@ pub fn fwd_actuation(model: &Model, topology: &Topology, bodies: &mut Articulate
     s.qacc_smooth = acc;
 }
 
-/// Returns the length of an actuator with this gear and its rate, which the velocity stage has left unless its gear was another.
+/// Returns the length of an actuator with this gear, and its rate, which the velocity stage has computed if its gear was the same.
 #[inline(always)]
 fn motion(model: &Model, topology: &Topology, s: &State, i: usize, gear: f64) -> [f64; 2] {
     if gear == transmission::gear(s, i) {
@@ -96,7 +96,7 @@ fn limit_joint_forces(model: &Model, s: &mut State) {
     }
 }
 
-/// Returns the force of an actuator by its control or activation, its length and its velocity.
+/// Returns the force of an actuator from its control or activation, its length and its velocity.
 #[inline(always)]
 fn gain_and_bias(model: &Model, i: usize, ctrl: f64, [length, velocity]: [f64; 2]) -> f64 {
     let affine = |p: &[f64; 10]| p[0] + p[1] * length + p[2] * velocity;

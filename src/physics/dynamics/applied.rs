@@ -25,7 +25,7 @@ pub fn xfrc_accumulate(model: &Model, s: &mut State) {
     s.qfrc_smooth = smooth;
 }
 
-/// Adds to generalised forces `qfrc` (nv) what a force and a torque on a body do that act at a point, all in the world frame
+/// Adds the generalised forces of a force and a torque on a body that act at a point, all in the world frame, to `qfrc` (nv)
 /// (MuJoCo's `mj_applyFT`).
 #[doc(alias = "mj_applyFT")]
 pub(super) fn add_force(

@@ -29,7 +29,7 @@ pub enum Damping {
 pub struct Articulated {
     /// The links, ascending by body.
     links: Vec<Link>,
-    /// Bodies without joints that carry none either, as rigid parts of links: the last ones first.
+    /// Bodies that neither have nor carry joints, which are rigid parts of links: the last ones first.
     loads: Vec<FixedBody>,
     /// The inertia of each link: lower triangle of the symmetric 6 by 6 matrix, row by row.
     inertia: Vec<[DampingPair; 21]>,
@@ -43,17 +43,17 @@ pub struct Articulated {
     forces: Vec<four::Four6>,
 }
 
-/// A body that joints move, with joints of its own or of a descendant.
+/// A body that joints move, with its own joints or those of a descendant.
 #[derive(Clone, Debug)]
 struct Link {
     body: usize,
     /// Its own degrees of freedom.
     dofs: Range<usize>,
-    /// The link next to it on the way to the world, if there is one.
+    /// The next link towards the world, if there is one.
     parent: Option<usize>,
     /// Whether its first three degrees of freedom move it along the axes of the world, as those of a free joint do.
     free: bool,
-    /// All but these three, where it is free in the world: products with their axes, zeros and a one, are written out. Else all.
+    /// All except these three if it is free in the world, because products with their axes, zeros and a one, are written out; otherwise all.
     turning: Range<usize>,
 }
 
@@ -92,7 +92,7 @@ fn matrix(i: &Inertia) -> [f64; 21] {
 }
 
 impl Articulated {
-    /// Makes room for the bodies of `model`.
+    /// Reserves memory for the bodies of `model`.
     pub fn new(model: &Arrays) -> Self {
         let nb = model.nbody();
         let mut bears: Vec<bool> = model.body_dofnum.iter().map(|&n| n > 0).collect();
@@ -196,7 +196,7 @@ impl Articulated {
         }
     }
 
-    /// Solves `M x = b` for the degrees of freedom of some bodies that hold whole trees; the rest of `x` stays as it is.
+    /// Solves `M x = b` for the degrees of freedom of some bodies that form whole trees; the rest of `x` stays as it is.
     pub(super) fn solve_trees(&mut self, s: &State, bodies: Range<usize>, b: &[f64], x: &mut [f64]) {
         self.solve_lane::<0>(s, self.links_of(bodies), b, x);
     }
@@ -298,7 +298,7 @@ fn unit_force_along(inertia: &[DampingPair; 21], row: usize, extra: DampingPair)
     (force, [extra[0] + a, extra[1] + b])
 }
 
-/// Frees an articulated body to move along an axis with the given force and inertia: removes from its inertia what that motion feels, in the rows and
+/// Frees an articulated body to move along an axis with the given force and inertia: removes the inertia that this motion feels, in the rows and
 /// columns `left` that are still needed.
 #[inline(always)]
 fn release(
@@ -331,8 +331,7 @@ mod tests {
     use crate::mjcf_loader::load_str;
     use crate::{Engine, SoftEngine, SoftOptions, Topology, compile};
 
-    /// A free trunk with limbs that branch, of joints with and without damping, and with rigid parts; bodies beside it, one of them on a
-    /// base that is fixed.
+    /// A free trunk with branching limbs, joints with and without damping, and rigid parts; beside it other bodies, one of them on a fixed base.
     const BRANCHES: &str = r#"<mujoco><option gravity="0 0 -9.81"/><default><joint armature=".01"/></default><worldbody>
         <body name="trunk" pos="0 0 1"><freejoint/><geom type="capsule" size=".1 .2"/>
           <body pos=".2 0 .1"><joint axis="0 1 0" damping=".3"/><joint axis="1 0 0"/><geom type="capsule" size=".04 .1"/>

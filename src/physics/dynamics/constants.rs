@@ -17,8 +17,8 @@ use crate::spatial::{angular, velocity_at};
 use crate::state::State;
 use crate::topology::Topology;
 
-/// Computes inverse weights, the diagonal of the inertia, the statistics that are not given (zero), and the poses of welds
-/// that have none of their own (MuJoCo's `mj_setConst`).
+/// Computes inverse weights, the diagonal of the inertia, the statistics that are not given (zero), and the poses of welds without a given one
+/// (MuJoCo's `mj_setConst`).
 #[doc(alias = "mj_setConst")]
 pub fn constants(model: &Arrays) -> Constants {
     let topology = Topology::new(model);
@@ -60,7 +60,7 @@ pub fn constants(model: &Arrays) -> Constants {
     }
 }
 
-/// Computes the relative poses at `qpos0` of the welds that are to hold them.
+/// Computes the relative poses at `qpos0` of the welds that keep them.
 ///
 /// The position is that of body 2's anchor, in the frame of body 1.
 fn weld_poses(model: &Arrays, s: &State) -> Vec<WeldPose> {
@@ -86,7 +86,7 @@ fn weld_poses(model: &Arrays, s: &State) -> Vec<WeldPose> {
     poses
 }
 
-/// Computes where the points of connections are in their second bodies at `qpos0`.
+/// Computes the positions of the points of connections in their second bodies at `qpos0`.
 fn connect_anchors(model: &Arrays, s: &State) -> Vec<(usize, Vec3)> {
     let kinds = model.eq_kind.iter().enumerate();
     let connections = kinds.filter_map(|(equality, kind)| match *kind {
@@ -105,8 +105,8 @@ fn connect_anchors(model: &Arrays, s: &State) -> Vec<(usize, Vec3)> {
     connections.collect()
 }
 
-/// Largest accepted product of a degree of freedom's inverse weight and inertia. The product is 1 if the others hold still
-/// on their own, and grows with the condition of the inertia. Beyond this limit it consists of rounding errors.
+/// Largest accepted product of a degree of freedom's inverse weight and inertia. The product is 1 if the others do not move, and grows with the
+/// condition of the inertia. Beyond this limit it consists of rounding errors.
 pub const MAX_WEIGHT: f64 = 1e13;
 
 /// Computes inverse weights: the mean acceleration per unit force at `qpos0`, that is, the diagonal of `J M^-1 J'`, averaged
@@ -116,7 +116,7 @@ struct InverseWeights<'a> {
     topology: &'a Topology,
     s: &'a State,
     bodies: Articulated,
-    /// Bodies of each tree: its first one and all below.
+    /// Bodies of each tree: the first one and all below it.
     tree_bodies: Vec<Range<usize>>,
     b: Vec<f64>,
     x: Vec<f64>,
@@ -254,7 +254,7 @@ fn flexedges(model: &Arrays, weights: &mut InverseWeights) -> Vec<[f64; 2]> {
     edges
 }
 
-/// Returns the poses at `qpos0` that cameras keep which do not turn with their body.
+/// Returns the poses at `qpos0` of cameras that do not turn with their body.
 fn camera_poses(model: &Arrays, s: &State) -> Vec<CameraPose> {
     let pose = |c: usize| {
         let b = model.cam_bodyid[c];
@@ -268,7 +268,7 @@ fn camera_poses(model: &Arrays, s: &State) -> Vec<CameraPose> {
     (0..model.ncam()).map(pose).collect()
 }
 
-/// Returns the poses at `qpos0` that lights keep which do not turn with their body.
+/// Returns the poses at `qpos0` of lights that do not turn with their body.
 fn light_poses(model: &Arrays, s: &State) -> Vec<LightPose> {
     let pose = |light: &Light| {
         let b = light.bodyid;
@@ -283,7 +283,7 @@ fn light_poses(model: &Arrays, s: &State) -> Vec<LightPose> {
     model.lights.iter().map(pose).collect()
 }
 
-/// Returns mean inertia, mass and size, extent and centre: as given, else computed.
+/// Returns mean inertia, mass and size, extent and centre: as given, or else computed.
 ///
 /// `dof_m0` is the diagonal of the inertia.
 fn statistics(model: &Arrays, s: &State, dof_m0: &[f64]) -> Statistic {
@@ -361,7 +361,7 @@ fn bounds(model: &Arrays, s: &State) -> (Vec3, Vec3) {
     (low, high)
 }
 
-/// Computes the size of each body: how far its joints, its children's joints and its geoms reach.
+/// Computes the size of each body: the reach of its joints, its children's joints and its geoms.
 ///
 /// Distances are from the body's centre of mass.
 fn sizes(model: &Arrays, s: &State) -> Vec<f64> {

@@ -28,7 +28,7 @@ pub(super) struct VelocityDerivative {
 }
 
 impl VelocityDerivative {
-    /// Fills `out`; the bias forces count only where `bias` says so.
+    /// Fills `out`; the bias forces count only if `bias` is set.
     #[doc(alias = "mjd_smooth_vel")]
     pub fn fill(&mut self, model: &Model, topology: &Topology, s: &State, bias: bool, out: &mut TreeMatrix) {
         out.clear(topology);
@@ -119,7 +119,7 @@ impl VelocityDerivative {
         }
     }
 
-    /// Adds what resists a length that changes with coordinates by `arms`.
+    /// Adds the resistance to changes of a length, whose derivatives by coordinates are `arms`.
     fn damper(&mut self, topology: &Topology, dofs: &[u32], arms: &[f64], slope: f64, out: &mut TreeMatrix) {
         self.entries.clear();
         let entries = dofs.iter().zip(arms).map(|(&d, &arm)| (d as usize, arm));
@@ -185,8 +185,7 @@ impl VelocityDerivative {
     }
 }
 
-/// Returns the derivative of an actuator's force by the rate of its length, which MuJoCo 3.3.0 takes where the force is at its limit,
-/// too.
+/// Returns the derivative of an actuator's force by the rate of its length, which MuJoCo 3.3.0 also uses if the force is at its limit.
 fn force_slope(model: &Model, s: &State, i: usize) -> f64 {
     if model.actuator_disabled(i) {
         return 0.0;
@@ -221,7 +220,7 @@ mod tests {
     use crate::mjcf_loader::load_str;
     use crate::{Engine, SoftEngine, SoftOptions, compile};
 
-    /// A free body with limbs that branch, dampers, a medium, tendons along a limb, actuators with velocity terms.
+    /// A free body with branching limbs, dampers, a medium, tendons along a limb, actuators with velocity terms.
     const LIMBS: &str = r#"<mujoco><option density="300" viscosity="2" wind="0.3 0.1 0"><flag contact="disable"/></option><worldbody><site name="fixed" pos=".1 -.5 .8"/>
         <body pos="0 0 1"><freejoint/><geom type="box" size=".1 .2 .05" density="300"/><geom name="ball" size=".05"/>
           <body pos=".2 0 .1"><joint name="a" axis="0 1 0" damping=".3"/><joint name="b" axis="1 0 0"/><geom type="capsule" size=".04 .1" fluidshape="ellipsoid" fluidcoef=".6 .3 1.2 .8 .5"/>

@@ -29,7 +29,7 @@ struct FluidGeom {
     added: [Vec3; 2],
 }
 
-/// Returns whether the medium acts on the geoms of a body, not on the body as a whole.
+/// Returns whether the medium acts on the geoms of a body instead of on the body as a whole.
 pub(super) fn swims(model: &Model, b: usize) -> bool {
     let geoms = model.body_geomadr[b]..model.body_geomadr[b] + model.body_geomnum[b];
     model.geom_fluid[geoms].iter().any(|fluid| fluid[0] > 0.0)
@@ -112,7 +112,7 @@ fn square(v: f64) -> f64 {
     v * v
 }
 
-/// Returns the matrix that crosses with a vector from the left.
+/// Returns the matrix of the cross product with a vector on the left.
 fn crossing(v: Vec3) -> [Vec3; 3] {
     [[0.0, -v[2], v[1]], [v[2], 0.0, -v[0]], [-v[1], v[0], 0.0]]
 }
@@ -157,7 +157,7 @@ impl FluidGeom {
         [most, x + y + z - most - least]
     }
 
-    /// Returns the diameter of a sphere that is as large on the whole.
+    /// Returns the diameter of a sphere of the same overall size.
     fn diameter(&self) -> f64 {
         2.0 / 3.0 * (self.axes[0] + self.axes[1] + self.axes[2])
     }

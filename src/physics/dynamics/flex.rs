@@ -7,8 +7,8 @@ use crate::spatial::velocity_at;
 use crate::state::State;
 use crate::topology::Topology;
 
-/// Computes `flexvert_xpos, flexedge_length, flexedge_j, flexedge_velocity` of all flexes. As in MuJoCo, edges of rigid flexes have no
-/// length but in the `reference` configuration. Poses and `cdof` must be up to date.
+/// Computes `flexvert_xpos, flexedge_length, flexedge_j, flexedge_velocity` of all flexes. As in MuJoCo, edges of rigid flexes have a length only in
+/// the `reference` configuration. Poses and `cdof` must be up to date.
 #[doc(alias = "mj_flex")]
 #[inline(never)]
 pub fn flexes(model: &Arrays, topology: &Topology, s: &mut State, reference: bool) {

@@ -40,7 +40,7 @@ pub(super) fn medium(model: &Model, s: &mut State) {
     }
 }
 
-/// Returns how a body turns, rad/s, and how its centre of mass moves through the medium, m/s, along its principal axes.
+/// Returns the angular velocity of a body, rad/s, and the velocity of its centre of mass through the medium, m/s, along its principal axes.
 fn relative_to_medium(model: &Model, s: &State, b: usize) -> (Vec3, Vec3) {
     let offset = sub(s.xipos[b], s.subtree_com[model.body_rootid[b]]);
     let axes = &s.ximat[b];
@@ -49,8 +49,8 @@ fn relative_to_medium(model: &Model, s: &State, b: usize) -> (Vec3, Vec3) {
     (turning, sub(moving, mat_t_vec(axes, model.opt.wind)))
 }
 
-/// Returns the derivatives of torque (3) and force (3) of a medium on a body by its own turning and moving along the same principal
-/// axis, N m s and N s/m.
+/// Returns the derivatives of torque (3) and force (3) of a medium on a body by the angular and linear velocity along the same principal axis, N m s
+/// and N s/m.
 #[doc(alias = "mjd_inertiaBoxFluid")]
 pub(super) fn medium_slopes(model: &Model, s: &State, b: usize) -> [f64; 6] {
     let (turning, moving) = relative_to_medium(model, s, b);

@@ -56,7 +56,7 @@ impl Integrator {
         s.step += 1;
     }
 
-    /// Computes the acceleration of the implicit methods. It is kept out of `advance`, which is compiled twice.
+    /// Computes the acceleration of the implicit methods. It is separate from `advance`, which is compiled twice.
     #[inline(never)]
     fn solve_implicit(&mut self, model: &Model, topology: &Topology, s: &State) {
         let bias = model.opt.integrator == IntegratorType::Implicit;
@@ -91,7 +91,7 @@ const STAGES: [f64; 3] = [0.5, 0.5, 1.0];
 const WEIGHTS: [f64; 4] = [1.0 / 6.0, 1.0 / 3.0, 1.0 / 3.0, 1.0 / 6.0];
 
 impl RungeKutta {
-    /// Advances `qpos, qvel, time` from a state that `evaluate` has computed already. `evaluate` computes accelerations from
+    /// Advances `qpos, qvel, time` from a state that `evaluate` has already computed. `evaluate` computes accelerations from
     /// positions and velocities.
     ///
     /// As in MuJoCo, everything that `evaluate` computes is afterwards that of the last evaluation. It does not change the sensors and what they
@@ -148,7 +148,7 @@ impl RungeKutta {
         Ok(())
     }
 
-    /// Sets positions and velocities to those of the start, moved for `h` with the sums.
+    /// Sets positions and velocities to those at the start, advanced by `h` with the sums.
     fn set(&self, model: &Model, s: &mut State, h: f64) {
         s.qpos.clone_from(&self.qpos);
         integrate_pos(model, &mut s.qpos, &self.velocity, h);

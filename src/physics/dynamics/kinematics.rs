@@ -8,8 +8,8 @@ use crate::model::{Arrays, CamLight, JointType, Model, SameFrame};
 use crate::spatial::spatial;
 use crate::state::State;
 
-/// Computes `xpos, xquat, xmat, xipos, ximat, xanchor, xaxis, geom_*, site_*` from `qpos`. What never moves is placed in the first call
-/// for a state.
+/// Computes `xpos, xquat, xmat, xipos, ximat, xanchor, xaxis, geom_*, site_*` from `qpos`. Elements that never move are placed in the first call for
+/// a state.
 #[doc(alias = "mj_kinematics")]
 #[inline(always)]
 pub fn kinematics(model: &Arrays, s: &mut State) {
@@ -49,7 +49,7 @@ pub fn kinematics(model: &Arrays, s: &mut State) {
     s.fixed_placed = true;
 }
 
-/// Places a body and its joints; its parent is placed.
+/// Places a body and its joints; its parent must be placed already.
 #[inline(always)]
 fn body(model: &Arrays, s: &mut State, b: usize) {
     let (mut pos, mut quat);
@@ -121,7 +121,7 @@ struct BodyFrames<'a> {
 }
 
 impl BodyFrames<'_> {
-    /// Returns the world pose of something fixed in the body. A frame that is known already is copied.
+    /// Returns the world pose of an element fixed in the body. A frame that is already known is copied.
     #[inline(always)]
     fn carry(&self, pos: Vec3, quat: Quat, same: SameFrame) -> (Vec3, Mat3) {
         let world_pos = match same {
@@ -138,7 +138,7 @@ impl BodyFrames<'_> {
     }
 }
 
-/// Returns the world pose of something fixed in a body. A frame that is known already is copied.
+/// Returns the world pose of an element fixed in a body. A frame that is already known is copied.
 #[doc(alias = "mj_local2Global")]
 #[inline(always)]
 pub(super) fn local_to_global(s: &State, body: usize, pos: Vec3, quat: Quat, same: SameFrame) -> (Vec3, Mat3) {
@@ -152,8 +152,8 @@ pub(super) fn local_to_global(s: &State, body: usize, pos: Vec3, quat: Quat, sam
     frame.carry(pos, quat, same)
 }
 
-/// Computes `cam_xpos, cam_xmat` from body poses and centres of mass. A camera that aims at something has its -z towards it
-/// and its x axis horizontal.
+/// Computes `cam_xpos, cam_xmat` from body poses and centres of mass. A camera that aims at something has its -z axis towards it and its x axis
+/// horizontal.
 #[doc(alias = "mj_camlight")]
 #[inline(always)]
 pub fn cameras(model: &Model, s: &mut State) {

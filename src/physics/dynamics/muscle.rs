@@ -7,10 +7,10 @@
 use crate::math::MINVAL;
 use crate::model::Model;
 
-/// Parameters, as an actuator's gain or bias has them.
+/// Parameters, as in an actuator's gain or bias.
 type MuscleParameters = [f64; 10];
 
-/// A muscle's peak force, with length and velocity scaled as its curves take them.
+/// A muscle's peak force, with length and velocity scaled for its curves.
 struct ScaledMuscle {
     /// Isometric force, N.
     force: f64,
@@ -37,7 +37,7 @@ impl ScaledMuscle {
         }
     }
 
-    /// Returns the active force at that length, relative to the greatest: four parabolas from `lmin` over 1 to `lmax`.
+    /// Returns the active force at that length, relative to the greatest: four parabolas from `lmin` through 1 to `lmax`.
     fn active(&self, prm: &MuscleParameters) -> f64 {
         let (length, lmin, lmax) = (self.length, prm[4], prm[5]);
         if !(lmin..=lmax).contains(&length) {
@@ -103,8 +103,8 @@ pub(super) fn gain_slope(model: &Model, actuator: usize, length: f64, velocity: 
     -muscle.force * muscle.active(prm) * by_velocity / fastest
 }
 
-/// Returns the bias of a muscle: minus its passive force, N, which grows with the square of the length beyond the optimum, and from
-/// half way to `lmax` on in proportion to it.
+/// Returns the bias of a muscle: minus its passive force, N, which grows with the square of the length beyond the optimum, and linearly from halfway
+/// to `lmax` on.
 #[doc(alias = "mju_muscleBias")]
 pub(super) fn bias(model: &Model, actuator: usize, length: f64) -> f64 {
     let prm = &model.actuator_biasprm[actuator];
@@ -123,7 +123,7 @@ pub(super) fn bias(model: &Model, actuator: usize, length: f64) -> f64 {
     }
 }
 
-/// Returns the rate of the activation of a muscle: it goes towards the control, faster up than down, with time constants that
+/// Returns the rate of the activation of a muscle: it moves towards the control, faster up than down, with time constants that
 /// depend on the activation. `prm` is time constants of activation and deactivation, s, and the width of the transition between
 /// them.
 #[doc(alias = "mju_muscleDynamics")]

@@ -8,7 +8,7 @@ use crate::model::Arrays;
 use crate::state::State;
 use crate::topology::Topology;
 
-/// Returns the bias of an actuator, with the damping that its damping ratio asks for.
+/// Returns the bias of an actuator, with the damping that follows from its damping ratio.
 ///
 /// That of a servo with gain `k` on a mass `m` is `2 ratio sqrt(k m)`; the mass is that of the joints at `qpos0`, seen through the
 /// gear.
@@ -30,8 +30,8 @@ pub(super) fn bias(model: &Arrays, topology: &Topology, s: &State, actuator: usi
     bias
 }
 
-/// Returns stiffness of the joints and damping of the degrees of freedom: as given, or those with which a joint on its own has the
-/// time constant and the damping ratio of its `springdamper`.
+/// Returns stiffness of the joints and damping of the degrees of freedom: as given, or those for which an isolated joint has the time constant and
+/// the damping ratio of its `springdamper`.
 pub(super) fn springs(model: &Arrays, dof_invweight0: &[f64]) -> (Vec<f64>, Vec<f64>) {
     let (mut stiffness, mut damping) = (model.jnt_stiffness.clone(), model.dof_damping.clone());
     for (j, &[timeconst, ratio]) in model.jnt_springdamper.iter().enumerate() {
@@ -47,7 +47,7 @@ pub(super) fn springs(model: &Arrays, dof_invweight0: &[f64]) -> (Vec<f64>, Vec<
     (stiffness, damping)
 }
 
-/// Returns the lengths between which each tendon's spring is slack: as given, else that in the springs' rest configuration.
+/// Returns the lengths between which each tendon's spring is slack: as given, or else that in the springs' rest configuration.
 pub(super) fn slack(model: &Arrays, topology: &Topology) -> Vec<[f64; 2]> {
     const AT_REST: [f64; 2] = [-1.0; 2];
     let mut lengths = model.tendon_lengthspring.clone();

@@ -1,5 +1,5 @@
-//! Parts of a step as single functions. A step inlines all of its parts into one function; these versions are compiled once, so programs
-//! contain each part only once more.
+//! Parts of a step as single functions. A step inlines all of its parts into one function. These versions are compiled separately, so each part is in
+//! a program only one more time.
 
 use super::{Articulated, BiasScratch, CompositeInertia, Damping};
 use crate::model::{Arrays, Model};

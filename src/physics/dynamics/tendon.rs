@@ -1,4 +1,4 @@
-//! Tendons: their lengths, the Jacobians of these, and the points that spatial tendons pass.
+//! Tendons: their lengths, the Jacobians of the lengths, and the points on spatial tendons.
 
 use super::wrap::{WrapShape, wrap};
 use crate::math::*;
@@ -42,7 +42,7 @@ fn fixed(model: &Arrays, topology: &Topology, s: &mut State, t: usize) {
     (s.ten_length[t], s.ten_velocity[t]) = (length, velocity);
 }
 
-/// Computes a spatial tendon; kept out of the code that is compiled twice.
+/// Computes a spatial tendon; separate from the code that is compiled twice.
 #[inline(never)]
 fn spatial(topology: &Topology, s: &mut State, t: usize, points: &mut usize) {
     let paths = &topology.tendon_paths;
@@ -113,11 +113,10 @@ fn spatial(topology: &Topology, s: &mut State, t: usize, points: &mut usize) {
 const SITE: i32 = -1;
 const PULLEY: i32 = -2;
 
-/// Below this a velocity for one of a degree of freedom may be a rounding error, m/rad.
+/// Below this, a velocity per unit velocity of a degree of freedom may be a rounding error, m/rad.
 const AT_REST: f64 = 1e-12;
 
-/// Adds to the row of a tendon what a point of a body, which `moved` moves, has to do with its length: the velocity of the point along
-/// a direction.
+/// Adds the contribution of a point of a body, which `moved` moves, to the row of a tendon: the velocity of the point along a direction.
 #[inline(always)]
 fn add_end(row: &mut [f64], cdof: &[Spatial], com: Vec3, moved: &[PathDof], point: Vec3, along: Vec3) {
     // as a wrench about the centre of mass to which `cdof` refers

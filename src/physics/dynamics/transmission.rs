@@ -79,7 +79,7 @@ pub fn transmissions(model: &Arrays, topology: &Topology, s: &mut State) {
     }
 }
 
-/// Computes one of them; kept out of the code that is compiled twice.
+/// Computes one of them; separate from the code that is compiled twice.
 #[inline(never)]
 fn own(model: &Arrays, topology: &Topology, s: &mut State, i: usize) {
     let row = topology.actuators.range(i);
@@ -110,7 +110,7 @@ struct TransmissionMoment<'a> {
 }
 
 impl TransmissionMoment<'_> {
-    /// Adds to the entries of some degrees of freedom, which ascend, what follows from their motion axes.
+    /// Adds the contributions of motion axes to the entries of some degrees of freedom, in ascending order.
     fn add(&mut self, s: &State, chain: &[u32], arm: impl Fn(&Spatial) -> f64) {
         let mut place = 0;
         for &d in chain {
@@ -121,7 +121,7 @@ impl TransmissionMoment<'_> {
         }
     }
 
-    /// Returns the offset of a point of a body from the centre that its motion axes are about.
+    /// Returns the offset of a point of a body from the centre to which its motion axes refer.
     fn offset(&self, s: &State, body: usize, point: Vec3) -> Vec3 {
         sub(point, s.subtree_com[self.model.body_rootid[body]])
     }
@@ -132,8 +132,8 @@ impl TransmissionMoment<'_> {
         [[s.params.actuator_gear[i], y, z], rotation]
     }
 
-    /// Turns a ball joint, whose length is that of its rotation vector along the gears, or pushes and turns a free joint, which has
-    /// none. The gears are in the axes of the body, or in those from which it turns.
+    /// Turns a ball joint, whose length is its rotation vector along the gears, or pushes and turns a free joint, which has no length. The gears are
+    /// in the axes of the body, or in those from which it turns.
     fn turning(&mut self, s: &State, i: usize) -> f64 {
         let (model, joint) = (self.model, self.model.actuator_trnid[i]);
         let Some(at) = model.jnt_type[joint].quat(model.jnt_qposadr[joint]) else {
@@ -168,7 +168,7 @@ impl TransmissionMoment<'_> {
         0.0
     }
 
-    /// Moves a site in the frame of another one; returns how far it is along the gears.
+    /// Moves a site in the frame of another one; returns its displacement along the gears.
     fn between(&mut self, s: &State, i: usize, reference: usize) -> f64 {
         let site = self.model.actuator_trnid[i];
         let gears = self.gears(s, i);
@@ -199,8 +199,8 @@ impl TransmissionMoment<'_> {
         length
     }
 
-    /// Moves a slider along its axis, at the other end of a rod from a crank; returns its place relative to that of the crank. Out of
-    /// reach the rod stands across the axis.
+    /// Moves a slider along its axis, at the end of a rod from a crank; returns its position relative to the crank. If the slider is out of reach,
+    /// the rod is perpendicular to the axis.
     fn crank(&mut self, s: &State, i: usize, slider: usize) -> f64 {
         let (site, rod, gear) = (
             self.model.actuator_trnid[i],
@@ -235,7 +235,7 @@ impl TransmissionMoment<'_> {
         gear * length
     }
 
-    /// Presses the contacts of a body together: the mean over their normals, those in the gap among them.
+    /// Presses the contacts of a body together: the mean over their normals, including contacts in the gap.
     fn contacts(&mut self, s: &State, body: usize) -> f64 {
         let mut count = 0.0;
         for contact in &s.contact {

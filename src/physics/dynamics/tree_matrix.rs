@@ -23,7 +23,7 @@ impl TreeMatrix {
         }
     }
 
-    /// Adds to an entry; one outside of the pattern stays zero.
+    /// Adds to an entry; one outside the pattern stays zero.
     pub fn add(&mut self, topology: &Topology, row: usize, col: usize, value: f64) {
         let Some(place) = topology.chain_place(row.min(col), row.max(col)) else {
             return;
@@ -82,8 +82,8 @@ impl TreeMatrix {
         }
     }
 
-    /// Factors the matrix into an upper triangle with ones on its diagonal times a lower triangle. Beginning at the leaves, no
-    /// entry outside of the pattern comes in.
+    /// Factors the matrix into an upper triangle with ones on its diagonal times a lower triangle. Because it begins at the leaves, no entry outside
+    /// the pattern arises.
     pub fn factor(&mut self, topology: &Topology) {
         for dof in (0..topology.slot.len()).rev() {
             let (chain, start) = (topology.dof_chain(dof), topology.chain_start(dof));

@@ -1,4 +1,4 @@
-//! A taut string around a sphere or a cylinder: where it touches, and how long the part is that lies on it.
+//! A taut string around a sphere or a cylinder: the points where it touches, and the length of the part on the shape.
 //!
 //! The shape is cut to a circle, that of the sphere in the plane of both ends and the centre, or that of the cylinder seen along its
 //! axis. Outside the circle the string follows one of two pairs of tangents and the arc between their points; inside it touches
@@ -52,8 +52,8 @@ fn unit2(a: Vec2) -> Vec2 {
     }
 }
 
-/// Wraps a string between two points around a shape, on the side of a third one if there is one, world, m. A third one that is nearer
-/// to the centre than the radius makes it pass inside. Returns nothing where the string is straight.
+/// Wraps a string between two points around a shape, on the side of a third point if there is one, world, m. A third point inside the radius makes
+/// the string pass inside. Returns `None` if the string is straight.
 #[doc(alias = "mju_wrap")]
 pub(super) fn wrap(ends: [Vec3; 2], round: &WrapShape, side: Option<Vec3>) -> Option<WrapPath> {
     let local = |p: Vec3| mat_t_vec(round.mat, sub(p, round.pos));
@@ -183,7 +183,7 @@ fn arc([p0, p1]: [Vec2; 2], turned: bool, radius: f64) -> f64 {
     }
 }
 
-/// Solves the equation of [`inside`] for `z`; `None` where Newton's method leaves the way down to the root, as MuJoCo then gives up.
+/// Solves the equation of [`inside`] for `z`; `None` if Newton's method no longer descends to the root, because MuJoCo then gives up.
 fn sine_at_touch([a, b]: [f64; 2], seen: f64) -> Option<f64> {
     const STEPS: usize = 20;
     const START: f64 = 1.0 - 1e-7;

@@ -30,7 +30,7 @@ pub(super) struct FreeJoint {
 /// A tree of the model.
 #[derive(Clone, Debug)]
 pub(super) struct Tree {
-    /// Rigid body of the root link: one with a free joint, or a fixed one at the origin of the world.
+    /// Rigid body of the root link: a free one, or a fixed one at the origin of the world.
     pub root: RigidBodyHandle,
     /// The free joint, if there is one.
     pub free: Option<FreeJoint>,
@@ -97,7 +97,7 @@ fn dynamic(body: usize) -> RigidBodyBuilder {
     builder
 }
 
-/// Creates the joint of a hinge: everything is locked but the rotation about x.
+/// Creates the joint of a hinge: everything is locked except the rotation about x.
 fn hinge(frame1: Pose, frame2: Pose) -> GenericJoint {
     GenericJoint {
         local_frame1: frame1,
@@ -359,7 +359,7 @@ impl RapierBodies {
         }
     }
 
-    /// Reads the velocities (nv) after Rapier's step, in the frames of its start.
+    /// Reads the velocities (nv) after Rapier's step, in the frames at its start.
     pub(super) fn velocities(&self, model: &Model, s: &State, sets: &RapierSets, out: &mut [f64]) {
         for tree in &self.trees {
             let Some(FreeJoint { body: b, dof: d }) = tree.free else {

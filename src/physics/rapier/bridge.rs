@@ -21,8 +21,7 @@ use mjcf_sim_physics::params::Params;
 use mjcf_sim_physics::state::{RESERVED_CONTACTS, State};
 use mjcf_sim_physics::topology::Topology;
 
-/// A model in a Rapier world that may hold anything else: it hands a [`State`] to Rapier before a step of the world,
-/// and takes the result out of it.
+/// A model in a Rapier world that may contain other bodies. It passes a [`State`] to Rapier before a step of the world and reads the result.
 ///
 /// [`Bridge::step`] advances a `PhysicsWorld`. Where the sets are your own, a step is [`Bridge::before`],
 /// `PhysicsPipeline::step` with [`Bridge::hooks`] and [`Bridge::parameters`], [`Bridge::after`], [`Bridge::advance`],
@@ -130,13 +129,13 @@ impl Bridge {
         state
     }
 
-    /// Chooses the geom that stands in `State::contacts` for colliders that are not the model's: by default the first
-    /// of the world's. Without one, such contacts act but are not sensed.
+    /// Chooses the geom that represents colliders outside the model in `State::contacts`, by default the first geom of the world. Without one, such
+    /// contacts act but are not sensed.
     pub fn set_stranger(&mut self, geom: Option<usize>) {
         self.stranger = geom.filter(|&g| g < self.model.ngeom());
     }
 
-    /// Returns Rapier's parameters: one step without substeps, all of Rapier's own approximations switched off.
+    /// Returns Rapier's parameters: one step without substeps, with all of Rapier's own approximations switched off.
     pub fn parameters(&self) -> IntegrationParameters {
         let (soft, _) = softness(self.options.contact_compliance, self.model.opt.timestep);
         IntegrationParameters {
@@ -202,7 +201,7 @@ impl Bridge {
         Ok(())
     }
 
-    /// Computes poses, contacts, constraint rows and forces; `stage` is told which part begins.
+    /// Computes poses, contacts, constraint rows and forces; `stage` is called with each stage that begins.
     pub(super) fn compute(&mut self, s: &mut State, stage: &mut dyn FnMut(Stage)) -> Result<(), EngineError> {
         let (model, topology) = (&*self.model, &*self.topology);
         check_input(model, topology, s)?;

@@ -15,7 +15,7 @@ use mjcf_sim_physics::constraint::ConstraintType;
 use mjcf_sim_physics::contact::frame::from_normal;
 use mjcf_sim_physics::{Contact, State};
 
-/// The aim of Rapier's solver for one contact.
+/// The target of Rapier's solver for one contact.
 #[derive(Clone, Copy, Debug)]
 struct ContactTarget {
     geom: [usize; 2],
@@ -45,7 +45,7 @@ struct TouchingPair {
 pub(super) struct ContactTargets {
     /// Pairs that touch, ascending.
     pairs: Vec<TouchingPair>,
-    /// The aim of each contact of the state; `None` where it is not a constraint.
+    /// The target of each contact of the state; `None` if it is not a constraint.
     aims: Vec<Option<ContactTarget>>,
     /// Frames of the contacts.
     frames: Vec<Mat3>,
@@ -107,7 +107,7 @@ impl ContactTargets {
         (ordinal < number).then_some(first + ordinal)
     }
 
-    /// Returns the distance that makes Rapier aim at a normal velocity: it lets a gap close within the step, and
+    /// Returns the distance that makes Rapier target a normal velocity: it lets a gap close within the step, and
     /// reduces penetration at its rate.
     fn distance(&self, normal: f64) -> f64 {
         if normal < 0.0 {
@@ -133,7 +133,7 @@ impl std::fmt::Debug for ContactHooks<'_> {
 }
 
 impl ContactHooks<'_> {
-    /// Returns the contact of a manifold, by its geoms and its place in the list of the pair.
+    /// Returns the contact of a manifold, identified by its geoms and its place in the list of the pair.
     fn contact(&self, a: usize, b: usize, manifold: &ContactManifold) -> Option<usize> {
         self.aims.find([a, b], manifold.subshape1 as usize)
     }
@@ -172,7 +172,7 @@ impl PhysicsHooks for ContactHooks<'_> {
 }
 
 /// Writes the forces of contacts to the state, in the contacts' frames, and to the rows of `s.efc`. Contacts with
-/// colliders that are not the model's are appended, with the geom `stranger` in the place of the other collider.
+/// colliders that are not the model's are appended, with the geom `stranger` instead of the other collider.
 pub(super) fn read_contacts(
     hooks: &ContactHooks,
     model: &Model,

@@ -1,4 +1,4 @@
-//! The contact routines behind Rapier's query-dispatcher interface.
+//! The contact routines as a query dispatcher of Rapier.
 
 use rapier3d_f64::parry::math::{Mat3 as ParryMat3, Pose, Vector};
 use rapier3d_f64::parry::query::details::NormalConstraints;
@@ -31,8 +31,8 @@ impl ContactDispatcher {
         Self { options, split: false }
     }
 
-    /// Creates a manifold of its own for each point, with the point's place in the list of the pair as `subshape1`.
-    /// Rapier's solver takes at most four points of a manifold; the contact routines find up to 24.
+    /// Creates a separate manifold for each point, with the point's place in the list of the pair as `subshape1`.
+    /// Rapier's solver uses at most four points of a manifold; the contact routines find up to 24.
     pub fn one_point_manifolds(self) -> Self {
         Self { split: true, ..self }
     }

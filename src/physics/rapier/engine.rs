@@ -1,4 +1,4 @@
-//! Rapier's pipeline as an engine: a bridge into a world of its own.
+//! Rapier's pipeline as an engine: a bridge to its own world.
 
 use std::sync::Arc;
 
@@ -18,7 +18,7 @@ use mjcf_sim_physics::state::State;
 use mjcf_sim_physics::topology::Topology;
 use mjcf_sim_physics::{Engine, EngineError, Probe, Stage};
 
-/// The sets of a world of our own.
+/// The sets of the engine's own world.
 #[derive(Clone, Debug, Default)]
 struct OwnedSets {
     bodies: RigidBodySet,
@@ -38,7 +38,7 @@ impl OwnedSets {
     }
 }
 
-/// A model prepared for Rapier: made once, so that making engines from it is cheap.
+/// A model prepared for Rapier. It is made once, so that creating engines from it is cheap.
 #[derive(Clone, Debug)]
 pub struct RapierModel {
     model: Arc<Model>,
@@ -124,7 +124,7 @@ impl RapierEngine {
         &self.bridge
     }
 
-    /// Tells the probe, if any, that a stage begins, or with `None` that the step is done.
+    /// Calls the probe, if any, with the stage that begins, or with `None` when the step is done.
     fn mark(&mut self, stage: Option<Stage>) {
         if let Some(p) = &mut self.probe {
             p(stage);

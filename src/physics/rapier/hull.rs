@@ -1,4 +1,4 @@
-//! Meshes as shapes of Parry's: their convex hulls, which know the meshes that the contact routines need.
+//! Meshes as shapes for Parry: their convex hulls, which also store the meshes that the contact routines need.
 
 use std::sync::Arc;
 
@@ -16,12 +16,12 @@ use mjcf_sim_model::model::Mesh;
 #[derive(Clone)]
 pub(super) struct HullShape {
     pub mesh: Arc<Mesh>,
-    /// The hull as Parry has it, or a box where it finds none.
+    /// Parry's hull, or a box if it finds none.
     parry: SharedShape,
 }
 
 impl HullShape {
-    /// Makes the shape of a mesh, or of a box of these half lengths where Parry finds no hull.
+    /// Makes the shape of a mesh, or of a box of these half lengths if Parry finds no hull.
     pub fn shared(mesh: &Mesh, half: Vec3) -> SharedShape {
         let corners = mesh.hull.iter().flat_map(|hull| &hull.vert);
         let places = corners.filter_map(|&v| mesh.vert.get(v as usize));
@@ -39,7 +39,7 @@ impl HullShape {
         })
     }
 
-    /// Returns the radius of a sphere about the origin that the mesh is in, m.
+    /// Returns the radius of a sphere about the origin that contains the mesh, m.
     pub fn radius(&self) -> f64 {
         let [low, high] = self.mesh.bounds;
         let most = |k: usize| low[k].abs().max(high[k].abs());
@@ -47,7 +47,7 @@ impl HullShape {
     }
 }
 
-/// Returns a shape that Parry knows: the substitute for a mesh, or the shape itself.
+/// Returns a shape that Parry supports: the substitute for a mesh, or the shape itself.
 pub(super) fn plain(shape: &dyn Shape) -> &dyn Shape {
     match shape.as_shape::<HullShape>() {
         Some(hull) => &*hull.parry,

@@ -6,7 +6,7 @@ use crate::scene::pose;
 use mjcf_sim_model::math::{quat_mul, quat_normalize};
 use mjcf_sim_model::model::Model;
 
-/// Returns the principal axes of a body, with the moments ascending, and the moments.
+/// Returns the principal axes of a body and their moments, in ascending order of the moments.
 ///
 /// Rapier adds up the mass properties of a body and its colliders and diagonalises the sum, which fails for moments
 /// below about 1e-5 kg m^2 unless it is diagonal and ascending already.

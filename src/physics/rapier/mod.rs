@@ -59,7 +59,7 @@ pub use coupling::{
 pub use dispatcher::ContactDispatcher;
 pub use engine::RapierEngine;
 pub use engine::RapierModel;
-/// Rapier, as it is part of this interface: [`rapier3d_f64::parry`] is the Parry beneath it.
+/// Rapier, which is part of this interface; [`rapier3d_f64::parry`] is its Parry.
 pub use rapier3d_f64;
 pub use scene::{RapierScene, SceneContact};
 
@@ -98,7 +98,7 @@ pub struct RapierOptions {
     /// Whether torque sensors count a weld's torque twice, see
     /// [`SoftOptions`](mjcf_sim_physics::SoftOptions::double_weld_torque).
     pub double_weld_torque: bool,
-    /// Whether to detect no contacts between geoms of the model.
+    /// Whether contacts between geoms of the model are ignored.
     pub disable_contacts: bool,
 }
 

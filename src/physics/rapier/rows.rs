@@ -23,8 +23,7 @@ use mjcf_sim_physics::topology::Topology;
 /// Index of the rotation about x among the axes of a joint.
 const ANG_X: usize = 3;
 
-/// The aim of a row: the velocity at the end of the step, and the compliance, velocity per impulse, with which it gives
-/// way.
+/// The target of a row: the velocity at the end of the step, and the compliance, velocity per impulse, with which it yields.
 #[derive(Clone, Copy, Debug, Default)]
 struct RowTarget {
     velocity: f64,
@@ -63,7 +62,7 @@ impl RowTarget {
 #[derive(Clone, Copy, Debug, Default)]
 struct DofRows {
     lock: Option<RowTarget>,
-    /// Sign of the limit's force, and its aim along it.
+    /// Sign of the limit's force, and the target along it.
     limit: Option<(f64, RowTarget)>,
     friction: Option<(f64, RowTarget)>,
 }
@@ -176,8 +175,7 @@ impl RapierRows {
         row.iter().map(|&(d, v)| v * self.response[d]).sum()
     }
 
-    /// Returns the velocity that a row on two joints reaches when it is solved alone; `None` for a limit that would not
-    /// act.
+    /// Returns the velocity that a row on two joints reaches when it is solved alone; `None` for an inactive limit.
     fn target(
         &mut self,
         model: &Model,
@@ -212,8 +210,8 @@ fn clear_joints(rig: &RapierBodies, sets: &mut RapierSets) {
     }
 }
 
-/// Sets a row on two joints as a coupling of Rapier, which is stiff and acts both ways: aimed at [`RapierRows::target`], it
-/// gives way as the row should.
+/// Sets a row on two joints as a coupling of Rapier, which is stiff and acts both ways: with the target [`RapierRows::target`], it yields as the row
+/// should.
 fn couple(rig: &RapierBodies, [(d1, j1), (d2, j2)]: [(usize, f64); 2], target: f64, h: f64, sets: &mut RapierSets) {
     let link = |dof: usize| rig.links.iter().find(|l| l.dof == dof);
     let (Some(first), Some(second)) = (link(d1), link(d2)) else {

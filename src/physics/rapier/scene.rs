@@ -36,7 +36,7 @@ impl PhysicsHooks for PairFilter {
     }
 }
 
-/// A contact as Rapier's collision pipeline reports it.
+/// A contact reported by Rapier's collision pipeline.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SceneContact {
     /// The geoms, the lower type first.
@@ -133,8 +133,7 @@ pub(super) fn geom_pose(model: &Model, geom: usize) -> Pose {
     local
 }
 
-/// Returns the geoms in the order in which their colliders are made: by type, so that Rapier hands pairs over with the
-/// lower type first.
+/// Returns the geoms in the order in which their colliders are made: by type, so that Rapier passes pairs with the lower type first.
 pub(super) fn collider_order(model: &Model) -> Vec<usize> {
     let mut order: Vec<usize> = (0..model.ngeom()).collect();
     order.sort_by_key(|&g| (model.geom_type[g], g));
@@ -218,8 +217,7 @@ impl RapierScene {
         scene
     }
 
-    /// Copies the body poses of a state, which are those of the start of its last step, and the sizes of its geoms, and
-    /// detects collisions among them.
+    /// Copies the body poses of a state, which belong to the start of its last step, and the sizes of its geoms, and detects collisions.
     ///
     /// # Errors
     /// A state of another model; nothing is changed then.
@@ -321,7 +319,7 @@ impl RapierScene {
         self.collider_handle.get(geom).copied()
     }
 
-    /// Returns the id of the geom of a collider, as queries report it.
+    /// Returns the id of the geom of a collider, for collider handles from queries.
     pub fn geom_of(&self, collider: ColliderHandle) -> Option<usize> {
         self.colliders.get(collider).map(|c| c.user_data as usize)
     }

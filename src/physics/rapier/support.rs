@@ -19,7 +19,7 @@ pub(super) fn check(model: &Model, topology: &Topology) -> Result<(), RapierErro
     shapes(model)
 }
 
-/// Refuses joints that multibodies do not have.
+/// Refuses joints that multibodies do not support.
 fn joints(model: &Model) -> Result<(), RapierError> {
     for j in 0..model.njnt() {
         let b = model.jnt_bodyid[j];
@@ -88,7 +88,7 @@ fn couplings(model: &Model, topology: &Topology) -> Result<(), RapierError> {
     Ok(())
 }
 
-/// Refuses shapes that Parry does not have, where anything could touch them.
+/// Refuses shapes that Parry does not support, if anything could touch them.
 fn shapes(model: &Model) -> Result<(), RapierError> {
     for g in 0..model.ngeom() {
         let touches = model.geom_contype[g] | model.geom_conaffinity[g] != 0

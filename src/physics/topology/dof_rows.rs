@@ -79,7 +79,7 @@ pub(super) fn flexedges(model: &Arrays, topology: &Topology) -> DofRows {
     }))
 }
 
-/// Returns the degrees of freedom on which each actuator with a moment of its own acts: on a ball joint, a free
+/// Returns the degrees of freedom on which each actuator with its own moment acts: on a ball joint, a free
 /// joint, a site, a slider-crank, contacts.
 pub(super) fn actuators(model: &Arrays, topology: &Topology) -> DofRows {
     let chain = |site: usize| topology.body_chain(model.site_bodyid[site]);
@@ -98,7 +98,7 @@ pub(super) fn actuators(model: &Arrays, topology: &Topology) -> DofRows {
     DofRows::new((0..model.nu()).map(of))
 }
 
-/// Lists the actuators with a moment of their own.
+/// Lists the actuators with their own moment.
 pub(super) fn own_moments(model: &Arrays) -> Vec<usize> {
     let own = |&i: &usize| match model.actuator_trntype[i] {
         TrnType::Joint | TrnType::JointInParent => model.actuator_turns(i).is_some(),

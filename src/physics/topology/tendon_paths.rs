@@ -32,7 +32,7 @@ pub struct PathSegment {
     pub sites: [usize; 2],
     /// Factor of its length.
     pub share: f64,
-    /// The straight line from one to the other.
+    /// The straight line from one site to the other.
     pub straight: StraightSegment,
     pub between: SegmentKind,
     /// Whether the path ends at the second site or continues after a pulley.
@@ -44,7 +44,7 @@ pub struct PathSegment {
 pub enum SegmentKind {
     /// A straight line.
     Nothing,
-    /// A straight line of constant length, m: no degree of freedom moves the sites against each other.
+    /// A straight line of constant length, m: no degree of freedom moves the sites relative to each other.
     Constant(f64),
     /// A geom that may be in the way.
     Geom(Obstacle),
@@ -70,7 +70,7 @@ pub struct StraightSegment {
     first: Range<usize>,
     /// Degrees of freedom that move the second body and not the first.
     second: Range<usize>,
-    /// Whether anything moves either body, be it both of them.
+    /// Whether anything moves at least one of the bodies.
     pub moves: bool,
 }
 
@@ -187,7 +187,7 @@ fn rigid_distance(model: &Arrays, sites: [usize; 2]) -> Option<f64> {
     (a == b).then(|| norm(sub(at_b, at_a)))
 }
 
-/// Returns the body that moves a site, by its joints or because a program moves it, and where the site is in its frame.
+/// Returns the body that moves a site, by its joints or because a program moves it, and the position of the site in its frame.
 fn carried(model: &Arrays, site: usize) -> (usize, Vec3) {
     let (mut body, mut pos) = (model.site_bodyid[site], model.site_pos[site]);
     while body > 0 && model.body_jntnum[body] == 0 && model.body_mocapid[body].is_none() {

@@ -1,4 +1,4 @@
-//! The arms of a body: which numbers of an action move them, and what their palms feel.
+//! The arms of a body: the numbers of an action that move them, and the sensations of their palms.
 
 use crate::env::Env;
 use crate::policy::PolicyError;
@@ -68,12 +68,12 @@ impl Arms {
         2 * self.skinned.len()
     }
 
-    /// Returns which palm a pair is of: 0 right, 1 left.
+    /// Returns the palm of a pair: 0 right, 1 left.
     pub(super) fn hand_of(&self, pair: u32) -> usize {
         usize::from(pair as usize >= self.skinned.len())
     }
 
-    /// Calls `each` with every pair of a palm and a part that is felt now; both sides have skin.
+    /// Calls `each` with every pair of a palm and a part that is currently felt; both sides have skin.
     pub(super) fn feel(&self, env: &Env, mut each: impl FnMut(u32)) {
         let contacts = env.senses().touch().map_or(&[][..], |touch| touch.contacts());
         for contact in contacts.iter().filter(|contact| contact.felt) {

@@ -4,13 +4,13 @@ use crate::spaces::NumpyRng;
 
 /// Width of the kernel over postures: root mean square of the differences of joint angles, rad. Random postures are about 0.5 apart.
 const WIDTH: f64 = 0.2;
-/// Weight of an imagined experience in which a movement led to nothing: what was tried once, elsewhere, promises little.
+/// Weight of an imagined experience in which a movement led to nothing, so that a movement tried only once, in another posture, promises little.
 const DOUBT: f64 = 0.1;
-/// Weight of an experience in a posture of another kind, so that there is a choice in postures that are new.
+/// Weight of an experience in a dissimilar posture, so that there is a choice in new postures.
 const ANYWHERE: f64 = 1e-5;
-/// Number of experiences of a movement that are kept, the last ones.
+/// Number of the latest experiences of a movement that are kept.
 const OUTCOMES: usize = 10;
-/// Maximum number of movements in memory: those of a million steps.
+/// Maximum number of movements in memory, enough for a million steps.
 const MOVEMENTS: usize = 12_000;
 
 /// An action that is held for some steps.
@@ -21,7 +21,7 @@ pub(super) struct Movement {
 }
 
 impl Movement {
-    /// Makes one that does nothing.
+    /// Makes a movement that does nothing.
     pub(super) fn rest(len: usize, steps: u32) -> Self {
         let action = vec![0.0; len];
         Self { action, steps }
@@ -33,11 +33,11 @@ impl Movement {
 pub(super) struct MovementOutcome {
     /// Joint angles before it, rad.
     pub(super) posture: Vec<f32>,
-    /// Pairs of a palm and a geom that were felt.
+    /// Pairs of a palm and a geom that felt each other.
     pub(super) felt: Vec<u32>,
 }
 
-/// The movements that promise most: for both hands together, and for each.
+/// The most promising movements: for both hands together, and for each hand.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct BestMovements {
     pub(super) both: Option<usize>,
@@ -46,7 +46,7 @@ pub(super) struct BestMovements {
 }
 
 impl BestMovements {
-    /// Returns the movement that promises more of those for one hand.
+    /// Returns the more promising of the movements for one hand.
     pub(super) fn lead(&self) -> Option<usize> {
         let [right, left] = self.promises;
         self.hands[usize::from(left > right)]

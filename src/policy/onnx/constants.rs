@@ -13,7 +13,7 @@ pub(super) struct ShortTensor {
     pub(super) whole: bool,
 }
 
-/// Lists the fields of a message that was looked through.
+/// Lists the fields of a message that was checked.
 pub(super) fn fields(bytes: &[u8]) -> Vec<(u64, WireField<'_>)> {
     wire::fields(bytes).unwrap_or_default()
 }

@@ -1,4 +1,4 @@
-//! Calls into the runtime, which panics on some models and goes along a graph by recursion.
+//! Calls into the runtime, which panics on some models and traverses graphs recursively.
 
 use std::any::Any;
 use std::cell::Cell;
@@ -8,7 +8,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Graphs with more operators are planned on a separate stack.
 pub(super) const SHALLOW: usize = 1000;
-/// Maximum number of operators of a graph: [`STACK`] holds them in a row, four times over in a release build.
+/// Maximum number of operators of a graph: [`STACK`] suffices for a chain of them, with a factor of four to spare in a release build.
 pub(super) const MOST: usize = if cfg!(target_arch = "wasm32") { SHALLOW } else { 10_000 };
 /// Bytes of the stack for large graphs.
 const STACK: usize = 64 << 20;
@@ -17,7 +17,7 @@ thread_local! {
     /// Whether this thread is inside the runtime.
     static INSIDE: Cell<bool> = const { Cell::new(false) };
 }
-/// Calls that are under way in the process.
+/// Number of calls in progress in the process.
 static CALLS: AtomicUsize = AtomicUsize::new(0);
 
 /// Calls the runtime for a model whose largest graph has `operators` operators. The message of a panic becomes the error and is not

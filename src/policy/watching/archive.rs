@@ -1,20 +1,20 @@
-//! The postures in which hands were seen best, and what is tried next.
+//! The postures in which hands were seen best, and the choice of the next one.
 
 use super::limbs::{DrivenJoints, DrivenPart, HANDS};
 use crate::spaces::NumpyRng;
 
 /// Number of postures that are kept for each hand, and for both together.
 const KEPT: usize = 8;
-/// Variations: standard deviations in half ranges of the joints, one of these by chance.
+/// Standard deviations of variations, in half ranges of the joints; one is drawn at random.
 const VARIATIONS: [f64; 4] = [0.03, 0.07, 0.15, 0.3];
 /// Minimum visibility of a hand for its posture to be varied.
 const SEEN: f64 = 0.01;
-/// Share of the trials that do the best one again: what was seen by chance is not seen twice.
+/// Share of the trials that repeat the best one: hands seen by chance are not seen again.
 const AGAIN: f64 = 0.15;
 /// Share of the trials that vary one of the best postures of both hands, instead of combining those of each.
 const TOGETHER: f64 = 0.6;
 
-/// A posture, and how well each hand was seen in it.
+/// A posture, and the visibility of each hand in it.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Trial {
     pub(super) posture: Vec<f64>,
@@ -29,7 +29,7 @@ impl Trial {
         Self { posture, seen, times }
     }
 
-    /// Adds what was seen in the same posture before.
+    /// Adds an earlier observation of the same posture.
     fn join(&mut self, before: &Self) {
         let all = f64::from(self.times + before.times);
         for (seen, other) in self.seen.iter_mut().zip(before.seen) {
@@ -110,7 +110,7 @@ impl TrialArchive {
     }
 }
 
-/// Adds a trial to those with most of its worth, if a hand is seen in it.
+/// Adds a trial to the best ones if a hand is seen in it.
 fn insert(list: &mut Vec<Trial>, trial: &Trial, hand: Option<usize>) {
     let worth = trial.worth(hand);
     if worth <= SEEN {

@@ -1,4 +1,4 @@
-//! The limbs that bring hands before eyes: the numbers of an action that move them, and how these hold a posture.
+//! The limbs that bring hands before eyes: the numbers of an action that move them, and the control that holds a posture.
 
 use crate::config::ActuationModel;
 use crate::env::Env;
@@ -8,10 +8,10 @@ use crate::spaces::{BoxSpace, NumpyRng};
 
 /// Number of hands: right, left.
 pub(super) const HANDS: usize = 2;
-/// Effort for each rad that an angle is off, and for each rad/s.
+/// Effort per rad of error, and per rad/s.
 const STIFFNESS: f64 = 2.0;
 const DAMPING: f64 = 0.15;
-/// Movements of a wrist: how far, rad, and how often, Hz.
+/// Movement of a wrist: amplitude, rad, and frequency, Hz.
 const SWING: f64 = 0.5;
 const RATE: f64 = 4.0;
 
@@ -145,7 +145,7 @@ impl DrivenJoints {
         self.drives.iter().map(angle).collect()
     }
 
-    /// Returns an angle that is off by `share` of half of the range of a joint.
+    /// Returns an angle shifted by `share` of half the range of a joint.
     pub(super) fn vary(&self, joint: usize, angle: f64, share: f64) -> f64 {
         let [low, high] = self.drives[joint].range;
         (angle + 0.5 * (high - low) * share).clamp(low, high)

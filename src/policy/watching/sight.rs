@@ -8,11 +8,11 @@ use crate::policy::PolicyError;
 const EYES: usize = 2;
 /// Change of a pixel's brightness that counts as movement, of 255, in the mean over the pictures of a movement.
 const LEAST: f32 = 8.0;
-/// Factor by which a pixel must change more than with the other hand. A shaking head moves the whole picture with either hand.
+/// Factor by which a pixel must change more with this hand than with the other. A shaking head moves the whole picture with either hand.
 const CLEAR: f32 = 2.0;
-/// Turning of the head or of an eye, rad, that halves what is found: with it, everything moves in the pictures.
+/// Rotation of the head or of an eye, rad, that halves the result, because it moves everything in the pictures.
 const TURN: f64 = 0.01;
-/// Part of a picture that has to move for a hand to be there.
+/// Share of a picture that must move for a hand to be visible.
 const AREA: f32 = 0.01;
 /// Widths of the middle of a picture, in half heights of the picture: the fovea, and the area near it with its weight.
 const FOVEA: f32 = 0.25;
@@ -23,7 +23,7 @@ const APART: f64 = 0.03;
 /// The observations of a trial.
 #[derive(Clone, Debug)]
 pub(super) struct ImageChanges {
-    /// For each hand, eye and pixel the sum of the changes while that hand moved.
+    /// For each hand, eye and pixel, the sum of the changes while that hand moved.
     changes: Vec<f32>,
     /// The pictures with which the next ones are compared, in shades of grey.
     last: Vec<f32>,
@@ -79,14 +79,14 @@ impl ImageChanges {
         self.since = 0;
     }
 
-    /// Keeps the present pictures for a comparison.
+    /// Keeps the current pictures for a comparison.
     pub(super) fn look(&mut self, env: &Env) {
         self.since = 0;
         self.last.clear();
         self.last.extend(shades(env));
     }
 
-    /// Notes what has changed while a hand moves, and how the eyes turn.
+    /// Records the changes while a hand moves, and the rotation of the eyes.
     pub(super) fn see(&mut self, env: &Env, hand: usize, gaze: impl Iterator<Item = f64>) {
         let turned = &mut self.gaze[hand];
         for (k, angle) in gaze.enumerate() {
@@ -109,7 +109,7 @@ impl ImageChanges {
         self.counts[hand] += 1;
     }
 
-    /// Returns, for each hand, the share of what moves with that hand only that lies in the middle of the eyes, 0 to 1.
+    /// Returns, for each hand, the share of the pixels moving only with that hand that lies in the middle of the eyes, 0 to 1.
     pub(super) fn found(&self) -> [f64; HANDS] {
         let pictures: usize = self.weights.iter().map(Vec::len).sum();
         let mean = |hand: usize, k: usize| self.changes[hand * pictures + k] / self.counts[hand].max(1) as f32;

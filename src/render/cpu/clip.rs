@@ -1,4 +1,4 @@
-//! Clipping of triangles at the view volume, as Mesa's draw module does it.
+//! Clipping of triangles at the view volume, as in Mesa's draw module.
 
 use super::camera::{AffineRow, Vec3f, cross, dot};
 use super::plane::Vertex;
@@ -22,7 +22,7 @@ pub enum CornerOrigin {
     New(usize),
 }
 
-/// A point that clipping made on an edge: `from + share (to - from)`.
+/// A point that clipping created on an edge: `from + share (to - from)`.
 #[derive(Clone, Copy, Debug)]
 pub struct EdgePoint {
     pub clip: ClipVertex,
@@ -54,7 +54,7 @@ pub fn outside([x, y, z, w]: ClipVertex) -> u32 {
         | u32::from(z > w) << 5
 }
 
-/// The relation of a box to the view volume, valid however the projection is rounded.
+/// The relation of a box to the view volume, valid for any rounding of the projection.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FrustumTest {
     /// All of it lies beyond one clipping plane.
@@ -232,7 +232,7 @@ pub fn lerp<const N: usize>(from: [f32; N], to: [f32; N], share: f32) -> [f32; N
     out
 }
 
-/// Projects a point that clipping has made.
+/// Projects a point created by clipping.
 pub fn project([x, y, z, w]: ClipVertex, half: [f32; 2]) -> Vertex {
     let iw = 1.0 / w;
     Vertex {

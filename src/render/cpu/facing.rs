@@ -22,7 +22,7 @@ pub struct LocalCamera {
     eye: Vec3f,
     /// Size of the drawable, m.
     size: Vec3f,
-    /// Pixels in a metre across, where the drawable is nearest.
+    /// Pixels per metre where the drawable is nearest.
     nearest: f32,
     /// Area in pixels of a square metre, seen from the front at a distance of 1 m, over the cube of the greatest distance.
     area: f32,
@@ -33,12 +33,12 @@ pub struct LocalCamera {
 /// The camera in the unit shape of one part of a drawable.
 pub struct PartCamera {
     eye: Vec3f,
-    /// Least product of the distance from a plane and the area of a face at which the face may show its front.
+    /// Smallest product of the distance from a plane and the area of a face for which the face may show its front.
     least: f32,
 }
 
 impl LocalCamera {
-    /// Locates the camera; `None` if the drawable is flat or a mesh of the model, or so near that it may be cut.
+    /// Locates the camera; `None` if the drawable is flat or a mesh of the model, or so near that it may be clipped.
     pub fn new(drawable: &Drawable, draw: &PlacedDrawable, eye: &ViewCamera, image: [usize; 2]) -> Option<Self> {
         let d = [
             eye.pos[0] - draw.pos[0],

@@ -8,7 +8,7 @@ use super::light::Vec3x4;
 use super::texels::{Coordinates, MipBlend, across, are_settled, channels, floor, gather, upward};
 use crate::texture::{MipChain, MipLevel};
 
-/// Weights are parts of this.
+/// Denominator of the weights.
 const ONE: u16 = 256;
 
 /// The channels of four texels, 16 bits for each: red and blue, green and mark.

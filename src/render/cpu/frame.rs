@@ -20,7 +20,7 @@ pub struct Frame {
     pub colour: VisibilityBuffer,
     /// The visibility buffer at the centre of each pixel, for depth and segmentation.
     pub centre: VisibilityBuffer,
-    /// Which of the two are drawn to.
+    /// Which of the two are drawn.
     pub targets: Targets,
     /// Width and height, pixels.
     pub size: [usize; 2],
@@ -62,9 +62,9 @@ pub struct PlacedDrawable {
     pub rows: [AffineRow; 3],
     /// Index of its first vertex in the frame.
     pub base: usize,
-    /// Index after its vertices, where those begin that clipping made of it.
+    /// Index after its vertices, at which the vertices created by clipping begin.
     pub end: usize,
-    /// Index of the first of these among all points made by clipping.
+    /// Index of the first of these among all points created by clipping.
     pub points: usize,
     /// Opacity.
     pub alpha: f32,
@@ -96,7 +96,7 @@ impl PlacedDrawable {
     };
 }
 
-/// The targets that are drawn to.
+/// The targets to draw.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Targets {
     /// Four samples for each pixel, for colours.
@@ -148,8 +148,7 @@ impl Frame {
         }
     }
 
-    /// Adds transparent drawables: their fragments for colours and, if `hiding`, to the centres of pixels as if they were
-    /// opaque.
+    /// Adds transparent drawables: their fragments for colours and, if `hiding` is set, also draws them to the pixel centres as if they were opaque.
     pub fn draw_transparent(&mut self, scenery: &Scenery, poses: &Poses, eye: &ViewCamera, hiding: bool) {
         self.targets.centre &= hiding;
         if self.targets == Targets::default() {

@@ -11,7 +11,7 @@ use super::small::{CoveredSamples, PIXEL};
 /// Number of triangles that are set up at a time.
 pub const GROUP: usize = 4;
 
-/// Triangles that wait to be set up together.
+/// Triangles waiting to be set up together.
 #[derive(Debug, Default)]
 pub struct TriangleGroup {
     /// The projected corners of each triangle.
@@ -114,7 +114,7 @@ impl TriangleGroup {
 /// The extents of four triangles in one direction, 1/256 pixels.
 struct Extent {
     low: f32x4,
-    /// How far they reach from there.
+    /// Their extents from there.
     reach: f32x4,
     /// The edge of the first pixel that they may cover, which is in the image.
     pixel: i32x4,
@@ -178,7 +178,7 @@ impl LaneEdges {
         (dx[0] * dy[1]).simd_gt(dy[0] * dx[1]).to_bitmask()
     }
 
-    /// Returns, for each kind of sample, a bit for each small triangle that covers one; `low` is the lower left of their extents.
+    /// Returns, for each kind of sample, a bit for each small triangle that covers a sample of that kind; `low` is the lower left of their extents.
     #[inline(always)]
     fn covered<S: Sampling>(&self, low: [i32x4; 2]) -> [u32; 4] {
         let along = |k: usize, place: i32| -> f32x4 {

@@ -1,6 +1,6 @@
 //! Arrays of three and four elements built without a loop (`array::map` with a closure that may panic is a call for each
-//! array, which costs more than the work itself), and lane operations that are cheaper where more is known about the numbers
-//! than `wide` can assume.
+//! array, which costs more than the work itself), and lane operations that are cheaper because they know more about the numbers than `wide` can
+//! assume.
 
 use wide::bytemuck::cast;
 use wide::{f32x4, i32x4};
@@ -34,7 +34,7 @@ pub fn at_least(v: f32x4, low: f32x4) -> f32x4 {
     }
 }
 
-/// Converts whole numbers between -2^22 and 2^22. Other inputs give platform-dependent garbage.
+/// Converts whole numbers between -2^22 and 2^22. For other inputs the result depends on the platform.
 ///
 /// WebAssembly's own conversion saturates, which x86 has to emulate with seven instructions.
 #[inline(always)]

@@ -12,7 +12,7 @@ use crate::scenery::{LightAim, LightSource, Scenery};
 use crate::single::single;
 use crate::view::Poses;
 
-/// Weakest highlight that is computed.
+/// Strength of the weakest highlight that is computed.
 const FAINT: f32 = 1e-4;
 const LN_FAINT: f32 = -9.210_340_5;
 
@@ -189,7 +189,7 @@ fn shade(lights: &[PlacedLight], drawable: &Drawable, p: &Vec3x4, n: &Vec3x4, to
     three(|k| within(highlights[k] + diffuse[k] * drawable.rgba[k]))
 }
 
-/// Returns where `(along / sqrt(squared))^y` is certainly too weak to be seen.
+/// Returns the lanes in which `(along / sqrt(squared))^y` is certainly too weak to be visible.
 #[inline(always)]
 fn faint(along: f32x4, squared: f32x4, y: f32) -> f32x4 {
     let least = 1.0 + 1.001 * LN_FAINT / y;
@@ -200,7 +200,7 @@ fn faint(along: f32x4, squared: f32x4, y: f32) -> f32x4 {
     }
 }
 
-/// Computes `x^y` for x up to 1; returns 0 where the result is too weak to be seen.
+/// Computes `x^y` for x up to 1; returns 0 if the result is too weak to be visible.
 fn power(x: f32, y: f32) -> f32 {
     // x^y <= exp(y (x - 1))
     debug_assert!((LN_FAINT - FAINT.ln()).abs() < 1e-4);
@@ -240,8 +240,7 @@ fn near_one(x: f64, y: f32) -> f64 {
 }
 
 impl PlacedLight {
-    /// Returns the unit directions from points to the light, and how much of the light's intensity arrives there
-    /// (0..1).
+    /// Returns the unit directions from points to the light, and the share of the light's intensity that arrives there (0..1).
     #[inline(always)]
     fn reach(&self, p: &Vec3x4) -> (Vec3x4, f32x4) {
         // a directional light has no distance to fade with

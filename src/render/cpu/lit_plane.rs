@@ -22,7 +22,7 @@ pub struct LitPlane {
 }
 
 impl LitPlane {
-    /// Returns the plane of a drawable, if it is one that is lit on a lattice.
+    /// Returns the plane of a drawable, if it is lit on a lattice.
     pub fn new(draw: u32, drawable: &Drawable, placed: &PlacedDrawable, eye: Vec3f) -> Option<Self> {
         drawable.lattice.map(|lattice| Self {
             draw,

@@ -136,8 +136,8 @@ impl CpuRenderer {
         self.draw(scenery, poses, view, ImageBuffers::rgb(out))
     }
 
-    /// Draws every second pixel of every second row of an image, the first ones included: the same as those of
-    /// [`CpuRenderer::rgb`], for less.
+    /// Draws every second pixel of every second row of an image, the first ones included: the same pixels as those of [`CpuRenderer::rgb`], at a
+    /// lower cost.
     ///
     /// # Errors
     /// Fails like [`CpuRenderer::rgb`].
@@ -148,7 +148,7 @@ impl CpuRenderer {
         view: &View,
         out: &mut [u8],
     ) -> Result<(), RenderError> {
-        // the whole image is rasterised: an image of half the size would have other samples
+        // the whole image is rasterised: an image of half the size would have different samples
         let half = View {
             width: view.width.div_ceil(2),
             height: view.height.div_ceil(2),
@@ -168,7 +168,7 @@ impl CpuRenderer {
         Ok(())
     }
 
-    /// Draws a gray image: one byte for each pixel, rows from the top, by the weights 0.2989, 0.5870, 0.1140. `rgb` is
+    /// Draws a gray image: one byte for each pixel, rows from the top, with the weights 0.2989, 0.5870, 0.1140. `rgb` is
     /// working space of [`View::rgb_len`] bytes and holds the colours afterwards.
     ///
     /// # Errors

@@ -1,5 +1,5 @@
 //! Linear functions over a triangle, set up and evaluated as in llvmpipe: from the lower left corner of the image.
-//! For triangles seen edge-on they are steep and the rounding errors large; they are the reference's.
+//! For triangles seen edge-on they are steep, and the rounding errors are large but equal to those of the reference.
 
 use wide::{f32x4, f64x4};
 

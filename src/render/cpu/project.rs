@@ -73,7 +73,7 @@ impl Frame {
         }
     }
 
-    /// Projects vertices of a mesh. Gives the outer sides on which any of them is, and on which all are.
+    /// Projects vertices of a mesh. Returns the outer sides on which any of them lies, and those on which all lie.
     fn project_all(&mut self, mesh: &Mesh, base: usize, range: Range<usize>, rows: &[AffineRow; 4]) -> (u8, u8) {
         let (mut any, mut all) = (0, u8::MAX);
         for group in range.start / LANES..range.end / LANES {
@@ -90,7 +90,7 @@ impl Frame {
         (any, all)
     }
 
-    /// Projects a group of vertices of a mesh. Gives them in clip coordinates.
+    /// Projects a group of vertices of a mesh. Returns them in clip coordinates.
     #[inline(always)]
     fn project(&mut self, mesh: &Mesh, base: usize, group: usize, rows: &[AffineRow; 4]) -> [clip::ClipVertex; LANES] {
         let half = [self.size[0] as f32 * 0.5, self.size[1] as f32 * 0.5];

@@ -42,7 +42,7 @@ pub trait Sink {
 struct Edge {
     dx: i32,
     dy: i32,
-    /// Added to the function, so that zero counts as inside or outside.
+    /// Offset of the function, which makes zero count as inside or outside.
     bias: i64,
     from: FixedVertex,
 }
@@ -82,8 +82,8 @@ impl Edge {
         up - i64::from(self.dy) * i64::from(x * 256 - self.from[0]) + self.bias
     }
 
-    /// Returns the edge function around a pixel at whose corner its value is `at`. Dropping the low bits changes no
-    /// sign, as all steps are whole grains.
+    /// Returns the edge function around a pixel at whose corner its value is `at`. Dropping the low bits changes no sign, because all steps are whole
+    /// grains.
     #[inline(always)]
     fn local<S: Sampling>(&self, at: i64) -> PixelEdge {
         // 32 bits hold the values around a block once the grain is taken out: eight pixels of edges that are at most
@@ -233,7 +233,7 @@ pub fn medium<S: Sampling>(
     }
 }
 
-/// Goes through a large triangle in blocks.
+/// Traverses a large triangle in blocks.
 #[inline(never)]
 fn blocks<S: Sampling>(
     sink: &mut impl Sink,

@@ -38,7 +38,7 @@ const COUNT: [f32; 16] = [
 /// The shading of a triangle: its colour and texture coordinates as linear functions.
 #[derive(Clone, Copy, Debug)]
 struct TriangleSetup {
-    /// Colour, divided by w; for a plane that is lit on a lattice, the place on it.
+    /// Colour, divided by w; for a plane that is lit on a lattice, the position on it.
     colour: Planes,
     texture: Planes,
     /// Factor on red, green and blue.
@@ -114,7 +114,7 @@ impl Shader {
         index.map_or(NONE, |index| index as u32)
     }
 
-    /// Passes on the colours that are seen in a block of 2 x 2 pixels, at the samples with a bit in `part`: four bits for each
+    /// Passes on the visible colours of a block of 2 x 2 pixels, at the samples with a bit in `part`: four bits for each
     /// pixel, the colours of all pixels in bytes.
     #[inline(always)]
     fn block(&self, frame: &Frame, scenery: &Scenery, at: [usize; 2], part: u32, mut emit: impl FnMut(u32, &Vec3x4)) {
@@ -138,7 +138,7 @@ impl Shader {
         }
     }
 
-    /// Writes an image with transparent things, each drawn twice: from the front to the back and then back.
+    /// Writes an image with transparent drawables, each drawn twice: once front to back and once back to front.
     #[cold]
     fn blended(&mut self, frame: &Frame, scenery: &Scenery, pixels: Pixels, out: &mut [u8]) {
         let (w, h) = (frame.size[0], frame.size[1]);

@@ -1,4 +1,4 @@
-//! The background: a cube map around everything, seen in the directions of pixels.
+//! The background: a cube map around the scene, looked up by the direction of each pixel.
 
 use wide::f32x4;
 

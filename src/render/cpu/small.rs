@@ -5,7 +5,7 @@ use wide::{f32x4, i32x4};
 use super::lanes::integers;
 use super::sampling::Sampling;
 
-/// Triangles below this extent are small, 1/256 pixels: of each kind of sample, at most one lies within.
+/// Triangles below this extent are small, 1/256 pixels: they contain at most one sample of each kind.
 pub const PIXEL: i32 = 256;
 
 /// The samples that a small triangle covers.

@@ -165,7 +165,7 @@ pub struct Writer<'a, K> {
     kind: PhantomData<K>,
 }
 
-/// Records a triangle unless it is recorded already; `id` is its index among the records, or [`NONE`].
+/// Records a triangle unless it is already recorded; `id` is its index among the records, or [`NONE`].
 #[inline(always)]
 fn keep(id: &mut u32, records: &mut Vec<Triangle>, record: Triangle) {
     if *id == NONE {

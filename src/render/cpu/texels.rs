@@ -80,8 +80,7 @@ pub fn gather(level: &MipLevel, places: [i32; 4]) -> u32x4 {
     u32x4::new(four(|k| u32::from_le_bytes(level.pixels[places[k] as usize])))
 }
 
-/// Gathers four texels around a place for each pixel of a block, from the place of the upper left one: the upper left ones,
-/// those on their right, the lower left ones, those on their right.
+/// Gathers four texels for each pixel of a block, given the index of the upper left one: upper left, upper right, lower left and lower right.
 #[inline(always)]
 pub fn gather_squares(level: &MipLevel, places: [i32; 4]) -> [u32x4; 4] {
     // 32 bits, so that no sum below needs a check that it does not overflow

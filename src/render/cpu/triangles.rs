@@ -16,7 +16,7 @@ use crate::mesh::{Band, Mesh};
 use crate::strip::{STRIP_LANES, Strip};
 
 impl Frame {
-    /// Draws a band that is not wholly in view.
+    /// Draws a band that is only partly in view.
     pub fn across(&mut self, mesh: &Mesh, rows: &[AffineRow; 4], index: usize, band: &Band) {
         let triangles = &mesh.triangles[band.triangles.clone()];
         // strips describe triangles that are wound as in the mesh
@@ -151,7 +151,7 @@ impl Frame {
         }
     }
 
-    /// Puts a triangle, whose vertices are given, among those to be rasterised.
+    /// Adds a triangle, given by its vertices, to those waiting to be rasterised.
     #[inline(always)]
     fn wait(&mut self, index: usize, vertices: [usize; 3]) {
         // four triangles of any strips wait for each other: a group that is full costs as much as one with a single
@@ -234,7 +234,7 @@ impl Frame {
 /// The projected vertices of a frame.
 struct Geometry<'a> {
     vertices: &'a [Vertex],
-    /// Their places, whole numbers of 1/256 pixels.
+    /// Their positions, in whole numbers of 1/256 pixels.
     x: &'a [f32],
     y: &'a [f32],
 }
@@ -268,7 +268,7 @@ impl Geometry<'_> {
     }
 }
 
-/// Returns four values, each a step after the one before.
+/// Returns four values, each a step after the previous one.
 #[inline(always)]
 fn lanes(v: &[f32], from: usize, step: usize) -> f32x4 {
     if step == 0 {

@@ -19,12 +19,12 @@ pub struct VisibleTriangles {
     /// Indices of the records of triangles.
     pub triangles: Vec<u32>,
     pub lights: Vec<PlacedLight>,
-    /// For each vertex of the frame, 1 if it is seen.
+    /// For each vertex of the frame, 1 if it is visible.
     marks: Vec<u8>,
-    /// Index into `lit` for each vertex that is seen.
+    /// Index into `lit` for each visible vertex.
     lit_of: Vec<u32>,
     lit: Vec<LitVertex>,
-    /// Points made by clipping that are seen, each with its drawable.
+    /// Visible points created by clipping, each with its drawable.
     points: Vec<[u32; 2]>,
 }
 
@@ -75,7 +75,7 @@ impl LitVertex {
     }
 }
 
-/// Returns the number of vertices to reserve: five eighths of the frame's capacity if its vertices fit, else all.
+/// Returns the number of vertices to reserve: five eighths of the frame's capacity if its vertices fit, otherwise all.
 fn room(frame: &Frame) -> usize {
     let all = frame.vertices.capacity();
     // most of a frame's vertices belong to back faces or are occluded; room for all would seldom be used
@@ -161,7 +161,7 @@ impl VisibleTriangles {
         }
     }
 
-    /// Marks the vertices of triangles that are seen.
+    /// Marks the vertices of visible triangles.
     fn mark(&mut self, frame: &Frame) {
         let count = frame.vertices.len();
         self.marks.resize(count, 0);
@@ -192,7 +192,7 @@ impl VisibleTriangles {
         self.points.sort_unstable();
     }
 
-    /// Marks a vertex of a drawable, whose points made by clipping begin at `end`.
+    /// Marks a vertex of a drawable, whose points created by clipping begin at `end`.
     #[inline(always)]
     fn want(&mut self, vertex: u32, draw: u32, end: usize) {
         let mark = &mut self.marks[vertex as usize];
@@ -242,7 +242,7 @@ impl VisibleTriangles {
         }
     }
 
-    /// Lights the points made by clipping, which lie between others.
+    /// Lights the points created by clipping, which lie between others.
     fn between(&mut self, frame: &Frame) {
         for k in 0..self.points.len() {
             let [v, draw] = self.points[k];

@@ -28,8 +28,8 @@ pub struct Atlas {
 }
 
 impl Atlas {
-    /// Places images in rows or, if `apart`, each in the corner of a texture of its own. `most` is the largest side
-    /// of a texture that the device allows.
+    /// Places images in rows or, if `apart` is set, each in the corner of its own texture. `most` is the largest side of a texture that the device
+    /// allows.
     pub fn new(views: impl Iterator<Item = View>, most: u32, apart: bool) -> Result<Self, GpuError> {
         let side = if apart { 0 } else { SIDE.min(most) };
         let mut atlas = Self::default();

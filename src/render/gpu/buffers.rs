@@ -17,7 +17,7 @@ pub struct Buffers {
     views: wgpu::Texture,
     /// Bind group of lights and views.
     pub group: wgpu::BindGroup,
-    /// Number of views that fit.
+    /// Number of views that fit into the buffers.
     room: usize,
 }
 
@@ -67,7 +67,7 @@ impl Buffers {
         }
     }
 
-    /// Uploads a frame of `views` views, after making room for it.
+    /// Uploads a frame of `views` views, after enlarging the buffers if necessary.
     pub fn write(
         &mut self,
         gpu: &Gpu,
@@ -137,7 +137,7 @@ fn room_for(views: usize) -> usize {
     }
 }
 
-/// Checks that something is within a limit of the device.
+/// Checks a size against a limit of the device.
 pub fn fits(what: &'static str, needed: u64, limit: u64) -> Result<(), GpuError> {
     if needed <= limit {
         Ok(())

@@ -1,4 +1,4 @@
-//! The graphics device: how it is chosen, and the errors it reports.
+//! The graphics device: its choice, and the errors it reports.
 
 use std::collections::HashMap;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -177,7 +177,7 @@ async fn adapters(instance: &wgpu::Instance, backends: wgpu::Backends, wanted: O
     found
 }
 
-/// Lists the adapters of this process, those of OpenGL only if nothing else has a GPU.
+/// Lists the adapters of this process, those of OpenGL only if no other backend has a GPU.
 ///
 /// They are searched once. Each search by wgpu wraps the same OpenGL context in a new lock, and it panics if the driver, like
 /// NVIDIA's, refuses a context that is in use in another thread.

@@ -39,7 +39,7 @@ pub struct Chunk {
     pub views: std::ops::Range<usize>,
     /// Calls for opaque drawables that lie inside their images, all views together.
     pub shared: std::ops::Range<usize>,
-    /// Calls for opaque drawables that reach out of their images.
+    /// Calls for opaque drawables that extend beyond their images.
     pub own: Vec<ViewCalls>,
     /// Calls for transparent drawables, in drawing order.
     pub clear: Vec<ViewCalls>,
@@ -128,7 +128,7 @@ impl SubmissionData {
         }
     }
 
-    /// Moves the flexes and skins, for each view as its poses have them.
+    /// Moves the flexes and skins to the poses of each view.
     fn wear(&mut self, r: &Submission) {
         self.worn_vertices.clear();
         self.worn_starts.clear();

@@ -81,8 +81,8 @@ pub struct GpuRenderer {
     submissions: u64,
 }
 
-/// Describes the adapters of this machine, the best first, as [`GpuRenderer::adapter`] does. OpenGL is searched only if nothing else
-/// finds a GPU; `WGPU_BACKEND` narrows the search.
+/// Describes the adapters of this machine, the best first, as [`GpuRenderer::adapter`] does. OpenGL is searched only if no other backend finds a GPU;
+/// `WGPU_BACKEND` narrows the search.
 #[cfg(not(target_arch = "wasm32"))]
 pub fn adapters() -> Vec<String> {
     device::descriptions()
@@ -147,9 +147,8 @@ impl GpuRenderer {
         self.gpu.software
     }
 
-    /// Chooses whether each image of a submission is drawn in a pass of its own, instead of many in one. That is the
-    /// default on software adapters: they gain nothing from large passes, and round at places far from the corner of a
-    /// texture.
+    /// Chooses whether each image of a submission is drawn in its own pass, instead of many in one. That is the
+    /// default on software adapters: they gain nothing from large passes, and rounding errors grow with the distance from the corner of a texture.
     pub fn draw_apart(&mut self, apart: bool) {
         self.apart = apart;
     }
@@ -240,7 +239,7 @@ impl GpuRenderer {
         size
     }
 
-    /// Returns a buffer to read images back through, from the pool if one fits.
+    /// Returns a buffer for reading images back, from the pool if one fits.
     fn readback(&self, bytes: u64) -> wgpu::Buffer {
         let mut pool = self.pool.lock().unwrap_or_else(PoisonError::into_inner);
         // not much larger than needed, or one large submission would keep its memory for ever

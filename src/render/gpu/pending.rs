@@ -19,7 +19,7 @@ pub struct Slot {
     pub height: usize,
 }
 
-/// Buffers that are free to be used again.
+/// Buffers that can be reused.
 pub type BufferPool = Arc<Mutex<Vec<wgpu::Buffer>>>;
 
 /// Images that the device is drawing. Several submissions may be pending at once.
@@ -86,7 +86,7 @@ impl<C: Channel> Images<C> {
 }
 
 impl<C: Channel> Pending<C> {
-    /// Creates a submission of no images.
+    /// Creates an empty submission.
     pub(super) fn none(gpu: &Gpu) -> Self {
         Self {
             gpu: gpu.clone(),
@@ -130,8 +130,8 @@ impl<C: Channel> Pending<C> {
         }
     }
 
-    /// Waits for the images without blocking the thread: in browsers until the event loop brings them, elsewhere by
-    /// asking the device whenever the future is polled.
+    /// Waits for the images without blocking the thread: in browsers until the event loop delivers them, elsewhere by polling the device whenever the
+    /// future is polled.
     ///
     /// # Errors
     /// Fails if the device was lost, ran out of memory or reported an error.
@@ -156,11 +156,11 @@ impl<C: Channel> Pending<C> {
         self.collect()
     }
 
-    /// Waits like [`Pending::wait`] and writes each image into a buffer of its own: slices of one array, for example,
+    /// Waits like [`Pending::wait`] and writes each image into its own buffer: slices of one array, for example,
     /// by `chunks_exact_mut`.
     ///
     /// # Errors
-    /// Fails like [`Pending::read`], or if a buffer has another length than its image.
+    /// Fails like [`Pending::read`], or if the length of a buffer differs from that of its image.
     #[cfg(not(target_arch = "wasm32"))]
     pub fn wait_into<'o>(self, outs: impl IntoIterator<Item = &'o mut [C::Value]>) -> Result<(), RenderError> {
         self.block()?;
@@ -229,8 +229,8 @@ impl<C: Channel> Pending<C> {
 
 #[cfg(not(target_arch = "wasm32"))]
 impl Transfer {
-    /// Returns the device's answer once it has finished the submission. Another thread that polls the same device may have taken the
-    /// answer before us, and be about to deliver it.
+    /// Returns the device's answer once it has finished the submission. Another thread that polls the same device may have taken the answer first and
+    /// be about to deliver it.
     fn arrived(&self) -> Option<Result<(), wgpu::BufferAsyncError>> {
         const LONGEST: std::time::Duration = std::time::Duration::from_secs(10);
         let arrival = self.arrival.lock().unwrap_or_else(PoisonError::into_inner);

@@ -85,7 +85,7 @@ const fn stepped<'a>(
     })
 }
 
-/// Buffers that shapes are drawn from: vertices and instances.
+/// Buffers from which shapes are drawn: vertices and instances.
 const SHAPE_BUFFERS: [Option<wgpu::VertexBufferLayout<'static>>; 2] = [
     stepped(
         48,
@@ -101,7 +101,7 @@ const SHAPE_BUFFERS: [Option<wgpu::VertexBufferLayout<'static>>; 2] = [
         ],
     ),
 ];
-/// Buffer that the background is drawn from: an index for each view.
+/// Buffer from which the background is drawn: an index for each view.
 const VIEW_BUFFERS: [Option<wgpu::VertexBufferLayout<'static>>; 1] = [stepped(
     4,
     wgpu::VertexStepMode::Instance,
@@ -249,7 +249,7 @@ impl Pipelines {
     }
 }
 
-/// Returns how vertices make triangles: a strip over each image for the background, a list for shapes.
+/// Returns how vertices form triangles: a strip over each image for the background, a list for shapes.
 fn primitive(sky: bool) -> wgpu::PrimitiveState {
     wgpu::PrimitiveState {
         topology: if sky {

@@ -107,7 +107,7 @@ impl GpuScene {
 /// Numbers of a vertex.
 pub const VERTEX: usize = 12;
 
-/// Adds the vertices of a mesh: position and part, normal, texture coordinates and whether they count.
+/// Adds the vertices of a mesh: position and part, normal, texture coordinates, and whether these are used.
 pub fn add_vertices(mesh: &Mesh, vertices: &mut Vec<f32>) {
     for (i, n) in mesh.normal.iter().enumerate() {
         let part = match mesh.part_of(i) {
@@ -130,7 +130,7 @@ struct Geometry {
     /// The range of indices of each mesh: those of [`Scenery::meshes`], those of skins, which have no vertices, the plane seen from behind,
     /// and for each plane that is lit on a lattice its grid from both sides.
     ranges: Vec<Range<u32>>,
-    /// The first range of the grid of each drawable that has one.
+    /// The first index range of the grid of each drawable with a grid.
     grids: Vec<Option<usize>>,
 }
 

@@ -1,4 +1,4 @@
-//! The textures that a pass draws into.
+//! The textures into which a pass draws.
 
 use super::device::Gpu;
 use super::pipelines::Output;

@@ -1,4 +1,4 @@
-//! Asking a device again later, in browsers.
+//! Polling a device later, in browsers.
 
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -8,7 +8,7 @@ use wasm_bindgen::{JsCast as _, JsValue};
 
 use super::map_status::MapStatus;
 
-/// Wakes the task that waits for a buffer in a later turn of the event loop: by `setTimeout`, which windows and workers have.
+/// Wakes the task that waits for a buffer in a later turn of the event loop: with `setTimeout`, which windows and workers have.
 pub fn later(arrival: &Arc<Mutex<MapStatus>>) {
     let arrival = arrival.clone();
     let wake = Closure::once_into_js(move || {

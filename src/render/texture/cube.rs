@@ -13,7 +13,7 @@ pub struct Cube {
     rims: Vec<[FaceBorder; 6]>,
 }
 
-/// The texels around a side in one level: left and right of it with the corners, from the top, then above and below.
+/// The texels around a side in one level: those left and right of it, including corners, from the top; then those above and below.
 type FaceBorder = Vec<[u8; 4]>;
 
 impl Cube {
@@ -31,8 +31,8 @@ impl Cube {
         self.rims.iter().flatten().map(Vec::len).sum()
     }
 
-    /// Returns the block of 2 x 2 texels of a side in a level of which the upper left one is in column `x` and row `y`,
-    /// from -1 up to the last one: rows from the top.
+    /// Returns the block of 2 x 2 texels of a side in a level whose upper left texel is in column `x` and row `y`, from -1 to the last one: rows from
+    /// the top.
     #[inline(always)]
     pub fn block(&self, side: u8, level: usize, x: i32, y: i32) -> [[u8; 4]; 4] {
         let side = usize::from(side);
@@ -87,8 +87,7 @@ fn rim(faces: &[MipChain; 6], side: u8, level: usize) -> FaceBorder {
     rim
 }
 
-/// Returns where a texel of a side of `n` texels is or, beyond one of its edges, that of the adjoining side: the side and the
-/// index.
+/// Returns the side and index of a texel of a side of `n` texels, or beyond one of its edges, of the texel on the adjoining side.
 fn place(n: i32, side: u8, x: i32, y: i32) -> (usize, usize) {
     // the centres of texels on a face that reaches from -1 to 1
     let centre = |i: i32| (2 * i + 1) as f32 / n as f32 - 1.0;

@@ -1,4 +1,4 @@
-//! Marks texels around which a texture has one colour, where a lookup needs no interpolation.
+//! Marks texels around which a texture has one colour, so lookups need no interpolation.
 
 use super::MipLevel;
 
@@ -6,8 +6,8 @@ use super::MipLevel;
 pub const MIXED: u8 = 255;
 /// Fourth byte of a texel if those to the right, below and diagonally between have the same colour.
 pub const PLAIN: u8 = 254;
-/// Fourth byte of a plain texel if the next level is plain, in the same colour, wherever a lookup between these four texels
-/// leads there. The last texel of a level is settled if the level has one colour.
+/// Fourth byte of a plain texel if the next level is plain, in the same colour, wherever a lookup between these four texels can lead. The last texel
+/// of a level is settled if the level has one colour.
 pub const SETTLED: u8 = 252;
 
 /// Bound on the rounding of texture coordinates, texels.
@@ -47,7 +47,7 @@ impl MipLevel {
     }
 }
 
-/// Finds the plain texels of a level that the next one agrees with.
+/// Finds the plain texels of a level that agree with the next level.
 fn settle(level: &mut MipLevel, next: &MipLevel) {
     let columns: Vec<_> = (0..level.width).map(|x| reached(x, level.width, next.width)).collect();
     for y in 0..level.height {
@@ -67,8 +67,8 @@ fn settle(level: &mut MipLevel, next: &MipLevel) {
     }
 }
 
-/// Returns the first and the last texel of the next level, `to` texels wide, that a lookup between a texel and the one after
-/// it, of `from`, starts from; `None` if it may reach beyond the image.
+/// Returns the first and the last texel of the next level, `to` texels wide, from which a lookup between a texel (of `from`) and the following one
+/// starts; `None` if it may reach beyond the image.
 fn reached(texel: usize, from: usize, to: usize) -> Option<[usize; 2]> {
     let place = |after: f32| (texel as f32 + 0.5 + after) * (to as f32 / from as f32) - 0.5;
     let (first, last) = ((place(0.0) - ROUNDING).floor(), (place(1.0) + ROUNDING).floor());

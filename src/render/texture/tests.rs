@@ -55,7 +55,7 @@ fn a_grid_deals_its_squares_to_the_faces_of_a_cube() {
     }
 }
 
-/// Four channels change nothing but what is blended, which is refused.
+/// Four channels only affect blended drawables, which are refused.
 #[test]
 fn four_channels_look_like_three() {
     let picture = |opacity: u8| {

@@ -118,7 +118,7 @@ impl EvaluationLog {
         Self::read_with(path, &Limits::DEFAULT)
     }
 
-    /// Reads `evaluation_N.pkl` as [`EvaluationLog::read`] does, within limits of the caller's choice.
+    /// Reads `evaluation_N.pkl` as [`EvaluationLog::read`] does, within the given limits.
     ///
     /// # Errors
     /// As [`EvaluationLog::read`].

@@ -14,7 +14,7 @@ use super::line::LineFormatter;
 use crate::env::{Info, PartNames};
 use crate::files::{self, replace_file_with};
 
-/// Size in bytes from which on buffered lines are written, and read.
+/// Size in bytes at which buffered lines are written, and read.
 const AT_ONCE: usize = 1 << 16;
 
 /// A file that this log has written or read.
@@ -51,7 +51,7 @@ struct ResumedRecords {
 /// The known contents of the `.jsonl` file next to a training log.
 #[derive(Debug, Default)]
 pub(super) struct JsonLines {
-    /// For the names of touched parts.
+    /// The writer of lines, with the names of touched parts.
     names: Option<PartNames>,
     resumed: Option<ResumedRecords>,
     known: Mutex<Option<KnownFile>>,

@@ -65,7 +65,7 @@ pub struct TrainingLog {
     records: OnceLock<Vec<Info>>,
     resumed: bool,
     lines: JsonLines,
-    /// Both counters of `hand_regard` by record. Lines have both; pickles, which have the kit's format, have one.
+    /// Both counters of `hand_regard` by record. Lines have both; pickles, in the kit's format, have one.
     regards: BTreeMap<usize, RegardCounts>,
     /// The lock that keeps other processes from training into the folder.
     _owner: Arc<Owner>,

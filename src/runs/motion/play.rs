@@ -16,7 +16,7 @@ pub enum MotionMode {
     /// it was, at rest.
     #[default]
     Kinematic,
-    /// MIMo's motors follow the angles. Everything, including the root, moves by the physics.
+    /// MIMo's motors follow the angles. Physics moves everything, including the root.
     Tracking,
 }
 
@@ -107,7 +107,7 @@ pub fn play_motion(
     Ok(played)
 }
 
-/// Makes a step with an action, and records it if there is a recorder.
+/// Takes a step with an action, and records it if there is a recorder.
 fn follow(env: &mut Env, action: &[f32], recorder: Option<&mut Recorder>) -> Result<(), MotionError> {
     match recorder {
         Some(recorder) => recorder.step(env, action)?,
@@ -183,7 +183,7 @@ impl<'m> MotionTrajectory<'m> {
         beyond
     }
 
-    /// Writes positions at a time, s, and their velocities: differences between the step before and the one after.
+    /// Writes positions at a time, s, and their velocities: central differences over the neighbouring steps.
     fn at(&self, time: f64, dt: f64, qpos: &mut [f64], qvel: &mut [f64]) {
         let end = self.motion.seconds();
         // central differences, which become one-sided at both ends of the motion

@@ -30,11 +30,11 @@ pub struct GeomDescription {
     pub part: String,
     /// The body that carries it.
     pub body: String,
-    /// The region of MIMo's body: head, trunk, arm, hand, leg or foot; none if it is not his.
+    /// The region of MIMo's body: head, trunk, arm, hand, leg or foot; none if the geom is not his.
     pub region: Option<String>,
     /// The side of MIMo's body: right or left; none in the middle.
     pub side: Option<String>,
-    /// The hand that it touches with: right or left, for palms; none for all others.
+    /// The hand to which it belongs: right or left, for palms; none for all others.
     pub palm_of: Option<String>,
 }
 

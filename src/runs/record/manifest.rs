@@ -23,7 +23,7 @@ pub struct Manifest {
     pub format: String,
     /// The version of the format.
     pub version: u32,
-    /// The version of babybench that recorded.
+    /// The version of babybench that made the record.
     pub babybench: String,
     /// The commit that it was built from, if the build named it (the variable `BABYBENCH_COMMIT`).
     pub commit: Option<String>,
@@ -31,11 +31,11 @@ pub struct Manifest {
     pub platform: String,
     /// Name of the policy.
     pub policy: String,
-    /// The configuration, the seed among its keys.
+    /// The configuration, including the seed.
     pub configuration: Config,
     /// Simulated time of a step, s.
     pub dt: f64,
-    /// Vertical field of view of his eyes, degrees, of the left one if they differ; none if he has no eyes.
+    /// Vertical field of view of MIMo's eyes, degrees; that of the left one if they differ; none if he has no eyes.
     pub fovy: Option<f64>,
     /// Vertical field of view of his right eye, degrees, if it differs from the left one's.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -84,12 +84,12 @@ pub struct EpisodeDescription {
     /// MIMo's age in months, if it was not that of the configuration; null for the original proportions.
     #[serde(default, skip_serializing_if = "Option::is_none", with = "other_age")]
     pub age: Option<Option<f64>>,
-    /// Whether the record was written before the episode ended: its end may not be the end of the episode.
+    /// Whether the record was written before the episode ended; its end may then not be the end of the episode.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub unfinished: bool,
 }
 
-/// An age that may be the original proportions: null stands for those, and nothing for the age of the configuration.
+/// An age that may stand for the original proportions: null means those, and a missing value means the age of the configuration.
 mod other_age {
     use serde::{Deserialize, Deserializer, Serialize, Serializer};
 

@@ -52,7 +52,7 @@ impl VectorRecorder {
         })
     }
 
-    /// Starts recording an episode of each environment from the current moment on, as [`Recorder::begin`] does.
+    /// Starts recording an episode of each environment at the current moment, as [`Recorder::begin`] does.
     ///
     /// # Errors
     /// Environments in flight.

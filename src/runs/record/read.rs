@@ -36,7 +36,7 @@ impl Record {
         Self::open_with(dir, &Limits::DEFAULT)
     }
 
-    /// Reads the description of a record within limits of the caller's choice.
+    /// Reads the description of a record within the given limits.
     ///
     /// # Errors
     /// As [`Record::open`].

@@ -47,7 +47,7 @@ struct BehaviorRows {
 /// Prefix of the names of changed arrays of the model.
 pub(super) const MODEL: &str = "model.";
 
-/// An episode as it is recorded.
+/// An episode that is being recorded.
 #[derive(Debug, Default)]
 pub(super) struct EpisodeRows {
     dt: f64,
@@ -147,7 +147,7 @@ impl EpisodeRows {
         self.eye_steps.clear();
     }
 
-    /// Adds a step. `drawn` is how many numbers the generator had drawn before it.
+    /// Adds a step. `drawn` is the number of values that the generator had drawn before it.
     pub fn push(&mut self, env: &Env, action: &[f32], drawn: u64, options: &RecordOptions) {
         let (state, observation) = (env.state(), env.observation());
         let step = self.len();

@@ -17,7 +17,7 @@ use crate::spaces::{Array, Values};
 pub struct TouchRows {
     /// First entry of each step (T + 1).
     pub ptr: Vec<i64>,
-    /// Positions in the touch observation, ascending within a step.
+    /// Indices into the touch observation, ascending within a step.
     pub idx: Vec<i32>,
     /// Values, N.
     pub val: Vec<f32>,
@@ -76,7 +76,7 @@ pub struct Replay {
     pub eye_sizes: [[usize; 2]; 2],
     /// Information of each step.
     pub info: Vec<Info>,
-    /// Rewards and goals, of a task that has them.
+    /// Rewards and goals, for a task that has them.
     pub task: Option<TaskRows>,
 }
 
@@ -122,7 +122,7 @@ impl TaskRows {
     }
 }
 
-/// Writes the starts of a recording's episodes, so that the replay is a recording, too.
+/// Writes the starts of a recording's episodes, so that the replay is also a recording.
 fn write_starts(npz: &mut NpzWriter, recording: &Recording) -> Result<(), ReplayError> {
     let starts = &recording.episodes;
     if starts.is_empty() {
@@ -155,7 +155,7 @@ fn write_starts(npz: &mut NpzWriter, recording: &Recording) -> Result<(), Replay
     Ok(())
 }
 
-/// Returns whether an entry is in [`Replay::senses`]. Goals, proprioception and touch have fields of their own.
+/// Returns whether an entry is in [`Replay::senses`]. Goals, proprioception and touch have separate fields.
 fn is_sense(entry: &ObservationEntry) -> bool {
     entry
         .sense
@@ -233,7 +233,7 @@ impl Replay {
         }
     }
 
-    /// Adds the images of the eyes. A viewer draws the colours that they do not observe.
+    /// Adds the images of the eyes. A viewer draws the colours if they are not observed.
     pub(super) fn push_eyes(&mut self, env: &Env, viewer: &mut Viewer) -> Result<(), EnvError> {
         let (observation, sizes) = (env.observation(), self.eye_sizes);
         for (entry, rows) in self.senses.iter_mut().filter(|(entry, _)| entry.image.is_some()) {

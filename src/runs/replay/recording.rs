@@ -11,7 +11,7 @@ pub struct Recording {
     pub qpos0: Vec<f64>,
     /// Velocities at the start (nv).
     pub qvel0: Vec<f64>,
-    /// Activities of the muscles at the start, in the order of an action; empty for models without.
+    /// Activities of the muscles at the start, in the order of an action; empty for models without muscles.
     pub activity0: Vec<f64>,
     /// Actions (T, na), row-major.
     pub actions: Vec<f32>,

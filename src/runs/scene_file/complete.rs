@@ -1,4 +1,4 @@
-//! Documents with all files that they name, as a folder: images, meshes, and attached models, which are documents of their own.
+//! Documents with all files that they name, as a folder: images, meshes, and attached models, which are separate documents.
 
 use std::collections::BTreeMap;
 
@@ -22,7 +22,7 @@ const IMAGE_ATTRIBUTES: [&str; 7] = [
     "fileback",
 ];
 
-/// Writes a document as one, with the files that it names, after `comment`.
+/// Writes a document and its includes as one document, with the files that it names, after `comment`.
 pub(super) fn complete(
     document: &str,
     path: &str,
@@ -81,8 +81,8 @@ impl CopiedFiles<'_> {
         Ok(Some(if inside { format!("../{kept}") } else { kept }))
     }
 
-    /// Includes a file and returns its new path. Files of equal names from different folders go into numbered folders. An element without
-    /// a name of its own is named after its file.
+    /// Includes a file and returns its new path. Files of equal names from different folders go into numbered folders. An element without a name is
+    /// named after its file.
     fn copy(&mut self, at: usize, file: &str, folder: &str, setting: &str) -> Result<String, SceneFileError> {
         let own = file.rsplit(['/', '\\']).next().unwrap_or(file);
         let broken = |reason: String| SceneFileError::Asset {
@@ -125,7 +125,7 @@ impl CopiedFiles<'_> {
     }
 }
 
-/// Returns the last value of an attribute in the `compiler` sections below a root. Within a section the last name counts.
+/// Returns the last value of an attribute in the `compiler` sections below a root. Within a section, the last value counts.
 fn setting<'t>(tree: &'t Tree, root: usize, names: &[&str]) -> Option<&'t str> {
     let sections = tree.nodes[root].children.iter().map(|&at| &tree.nodes[at]);
     let sections = sections.filter(|node| node.name == "compiler");

@@ -1,4 +1,4 @@
-//! Contacts with skin, from the side of the body that is touched.
+//! Contacts with skin, seen from the touched body.
 
 use super::SkinLayout;
 use crate::config::Compat;
@@ -30,7 +30,7 @@ pub struct TouchContact {
     pub point: Vec3,
     /// Point of contact, m, frame of the body.
     pub point_body: Vec3,
-    /// Whether sensors are near enough to sense it; set by [`Touch::sense`](super::Touch::sense).
+    /// Whether a sensor is near enough to sense it; set by [`Touch::sense`](super::Touch::sense).
     pub felt: bool,
     /// Index of the body in [`SkinLayout::bodies`].
     pub(super) index: usize,
@@ -70,7 +70,7 @@ pub fn touch_contacts(
     }
 }
 
-/// Appends to `out` the sides of contacts of flexes whose bodies have skin, as [`touch_contacts`] does. The contacts are counted from `first`.
+/// Appends to `out` the sides of contacts of flexes whose bodies have skin, as [`touch_contacts`] does. The contacts are numbered from `first`.
 pub(super) fn touch_flexes(
     touched: &TouchedBodies,
     first: usize,

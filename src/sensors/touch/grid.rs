@@ -2,7 +2,7 @@
 
 use crate::math::{Vec3, order, sub};
 
-/// Greatest number of cells along an axis; beyond it cells become larger, which is slower but as exact.
+/// Greatest number of cells along an axis; beyond it cells become larger, which is slower but equally exact.
 const MAX_CELLS: f64 = 256.0;
 
 /// Sensors by cell. Coordinates are stored in the order of cells, x fastest, so that a row of cells is one run of

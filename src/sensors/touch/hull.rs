@@ -34,7 +34,7 @@ impl PlaneBundle {
     }
 }
 
-/// The convex hull of a set of points, as half spaces in a tree of bundles, most of which are rejected together.
+/// The convex hull of a set of points, as half spaces in a tree of bundles, which are mostly rejected together.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Hull {
     planes: Vec<HalfSpace>,
@@ -118,8 +118,7 @@ mod tests {
     use crate::model::GeomType;
     use crate::sensors::touch::points::surface_points;
 
-    /// Checks that the faces contain all points, that each touches three of them, and that together they close: Euler's
-    /// formula.
+    /// Checks that the faces contain all points, that each touches three of them, and that together they close, by Euler's formula.
     #[test]
     fn hulls_of_sensor_points_contain_them_all() {
         let mut worst = 0.0_f64;
@@ -153,7 +152,7 @@ mod tests {
         assert!(worst < 1e-12);
     }
 
-    /// Checks that bundles give what all planes give, one by one.
+    /// Checks that bundles give the same result as all planes tested one by one.
     #[test]
     fn bundles_dismiss_no_plane_that_matters() {
         let points = surface_points(GeomType::Capsule, [0.052, 0.035, 0.0], 0.004);

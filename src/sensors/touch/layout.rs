@@ -1,4 +1,4 @@
-//! The layout of the skin: which bodies have sensors, and where.
+//! The layout of the skin: the bodies with sensors, and their positions.
 
 use std::ops::Range;
 
@@ -30,7 +30,7 @@ pub enum SkinError {
         /// Distance between its sensors, m.
         spacing: f64,
     },
-    /// A geom that touches is a mesh or a height field.
+    /// A geom that can touch is a mesh or a height field.
     #[error(
         "{body:?} has a mesh or a height field that touches, on which touch sensors are not placed; give the body shapes that touch, and contype=\"0\" conaffinity=\"0\" to the other"
     )]

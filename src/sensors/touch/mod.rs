@@ -61,7 +61,7 @@ const REACH: f64 = 2.0;
 /// Bound below which the reference does not respond: the x component of the force times the sum of weights.
 const DROPPED: f64 = 1e-10;
 
-/// Greatest number of geoms for which the rotation to a sensor's frame is kept during a contact.
+/// Greatest number of geoms for which the rotation to a sensor's frame is cached during a contact.
 const MAX_GEOMS: usize = 8;
 
 /// A sensor that feels a force.
@@ -91,7 +91,7 @@ pub struct Touch {
 }
 
 impl Touch {
-    /// Creates a sense that feels nothing yet.
+    /// Creates a sense without contacts.
     ///
     /// Any `function` may be combined with any `compat`: [`TouchFunction::Normal`] is the page's normal force,
     /// [`TouchFunction::NormalForce`] the Python code's. `compat` decides
@@ -117,7 +117,7 @@ impl Touch {
         Self::new(layout, config.touch_function, config.touch_response, config.compat)
     }
 
-    /// Returns where the sensors are.
+    /// Returns the layout of the sensors.
     pub fn layout(&self) -> &Arc<SkinLayout> {
         &self.layout
     }
@@ -127,7 +127,7 @@ impl Touch {
         self.function
     }
 
-    /// Returns the number of values per sensor: 1 for [`TouchFunction::Normal`], else 3.
+    /// Returns the number of values per sensor: 1 for [`TouchFunction::Normal`], otherwise 3.
     pub fn width(&self) -> usize {
         self.felt.width()
     }
@@ -203,7 +203,7 @@ impl Touch {
         felt.fold([0.0; 3], |sum, c| add(sum, c.force))
     }
 
-    /// Senses a state: the contacts of geoms and flexes, and the poses of the start of its last step.
+    /// Senses a state: the contacts of geoms and flexes, and the poses at the start of its last step.
     pub fn observe(&mut self, model: &Model, s: &State) {
         self.sense_with_flexes(model, (&s.contact, &s.flex_contact), (&s.xpos, &s.xmat));
     }
@@ -253,8 +253,8 @@ impl Touch {
         }
     }
 
-    /// Adds `value` (in the frame of the body, N), pressed on the skin of a body at `point` (same frame, m), to what is
-    /// felt already; [`Self::contacts`] do not change.
+    /// Adds `value` (in the frame of the body, N), pressed on the skin of a body at `point` (same frame, m), to the current values;
+    /// [`Self::contacts`] do not change.
     pub fn press(&mut self, body: usize, point: Vec3, value: Vec3) {
         let layout = self.layout.clone();
         if let Some(skin) = layout.body(body) {

@@ -23,7 +23,7 @@ pub fn surface_points(kind: GeomType, size: Vec3, spacing: f64) -> Vec<Vec3> {
     }
 }
 
-/// Estimates how many points [`surface_points`] makes, never less than a quarter of it.
+/// Estimates the number of points that [`surface_points`] makes, never less than a quarter of it.
 pub(super) fn estimate(kind: GeomType, size: Vec3, spacing: f64) -> f64 {
     let half = match kind {
         GeomType::Plane | GeomType::HField | GeomType::Mesh => return 0.0,
@@ -38,7 +38,7 @@ pub(super) fn estimate(kind: GeomType, size: Vec3, spacing: f64) -> f64 {
 
 const CENTRE: Vec3 = [0.0; 3];
 
-/// Keeps the first of points that agree to 1e-8 m, in their order.
+/// Keeps only the first of points that agree to 1e-8 m, and their order.
 fn dedupe(points: Vec<Vec3>) -> Vec<Vec3> {
     // caps repeat the last ring of the wall, faces of a box share their edges
     let mut seen = BTreeSet::new();

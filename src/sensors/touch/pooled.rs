@@ -1,4 +1,4 @@
-//! Touch of whole parts of the body.
+//! Touch pooled over whole parts of the body.
 
 use super::{SkinLayout, Touch};
 use crate::math::add;

@@ -1,4 +1,4 @@
-//! The same skin on a body of other proportions.
+//! The same skin on a body with other proportions.
 
 use super::grid::Grid;
 use super::layout::{SkinBody, SkinLayout};
@@ -6,7 +6,7 @@ use crate::math::{Vec3, add, mat_t_vec, mat_vec, quat_normalize, quat_to_mat, su
 use crate::model::{GeomType, Model};
 
 impl SkinLayout {
-    /// Returns the same sensors, in the same order, on a model whose geoms have other sizes and places. Each keeps its place on its geom.
+    /// Returns the same sensors, in the same order, on a model whose geoms have different sizes and places. Each keeps its place on its geom.
     /// The models have the same bodies and geoms.
     ///
     /// The distance between the sensors of a body is scaled by the largest ratio of its geoms' bounding radii.
@@ -36,7 +36,7 @@ fn scale(body: &mut SkinBody, from: &Model, to: &Model) {
     body.grid = Grid::new(&body.positions, 2.0 * body.spacing);
 }
 
-/// Moves a point on or in a geom, in its frame, to the place that it has when the size changes from `a` to `b`.
+/// Moves a point on or in a geom, in its frame, to its position after the size changes from `a` to `b`.
 fn stretch(kind: GeomType, a: Vec3, b: Vec3, [x, y, z]: Vec3) -> Vec3 {
     let [r, l] = [b[0] / a[0], b[1] / a[1]];
     match kind {

@@ -48,7 +48,7 @@ impl SkinValues {
         &self.values[self.range(sensor)]
     }
 
-    /// Returns the values of a sensor to be changed, which counts as written from now on.
+    /// Returns the values of a sensor for changes; it counts as written from now on.
     pub fn of_mut(&mut self, sensor: usize) -> &mut [f32] {
         if !self.is_touched[sensor] {
             self.is_touched[sensor] = true;

@@ -51,9 +51,8 @@ pub struct AcuityOptions {
     pub age: f64,
     /// Height of the field of view, degrees; pixels are square.
     pub fovy: f64,
-    /// Whether to follow the authors' Python code, which blurs across the borders, as if images continued with their opposite side,
-    /// truncates instead of rounding, is half a frequency off in images of odd size, and takes the field of view to be that of the longer
-    /// side.
+    /// Whether to follow the authors' Python code. It blurs across the borders, as if images continued with their opposite side, truncates instead of
+    /// rounding, is off by half a frequency for images of odd size, and assigns the field of view to the longer side.
     pub reference: bool,
 }
 
@@ -76,7 +75,7 @@ pub struct Acuity {
 enum BorderFilter {
     /// As their mirror image.
     Mirrored(Box<MirrorFilter>),
-    /// With their opposite side, as the authors' code has it.
+    /// With their opposite side, as in the authors' code.
     Wrapped {
         fourier: Box<PeriodicFilter>,
         /// Whether the transfer function is the same for a frequency and its negative, so that real pictures stay real.
@@ -107,8 +106,7 @@ impl Acuity {
         }
     }
 
-    /// Returns the transfer function at the frequency of `v` waves over the height and `u` over the width, each from half
-    /// the pixels below zero on.
+    /// Returns the transfer function at the frequency of `v` waves over the height and `u` over the width, each starting half the pixels below zero.
     pub fn transfer(&self, v: isize, u: isize) -> f64 {
         if self.options.reference {
             let (v, u) = (v.rem_euclid(self.height as isize), u.rem_euclid(self.width as isize));
@@ -176,7 +174,7 @@ impl Acuity {
     }
 }
 
-/// Added before truncation, for whole numbers that rounding has made slightly smaller.
+/// Offset before truncation, for whole numbers that rounding has made slightly smaller.
 const EXACT: f64 = 1e-9;
 
 /// Returns the exponent of the transfer function: from 1 at 0.1 cycles per degree to 0.01 at the cut-off, two decades down over
@@ -194,8 +192,8 @@ fn gain(frequency: f64, slope: f64) -> f64 {
     }
 }
 
-/// Returns the transfer function of all frequencies, column by column; `frequency` is that of an index, of a number of pixels,
-/// cycles per pixel.
+/// Returns the transfer function of all frequencies, column by column; `frequency` returns the frequency of an index for a number of pixels, cycles
+/// per pixel.
 fn table(age: f64, per_degree: f64, [height, width]: [usize; 2], frequency: impl Fn(usize, usize) -> f64) -> Vec<f64> {
     let slope = slope(age);
     let mut out = Vec::with_capacity(height * width);
@@ -209,7 +207,7 @@ fn table(age: f64, per_degree: f64, [height, width]: [usize; 2], frequency: impl
     out
 }
 
-/// Returns the transfer function as the authors have it, in the order of a Fourier transform.
+/// Returns the authors' transfer function, in the order of a Fourier transform.
 fn transfer_of_waves(options: AcuityOptions, height: usize, width: usize) -> Vec<f64> {
     let per_degree = (height as f64).max(width as f64) / options.fovy;
     table(options.age, per_degree, [height, width], |index, size| {

@@ -130,7 +130,7 @@ impl DelayValues for SkinValues {
     }
 }
 
-/// Values that wait, the same number of steps each.
+/// Values that each wait for the same number of steps.
 #[derive(Clone, Debug)]
 struct RingBuffer<T> {
     slots: Vec<T>,
@@ -148,7 +148,7 @@ impl<T: DelayValues + Clone> RingBuffer<T> {
         }
     }
 
-    /// Exchanges new values for those of as many steps ago as there are slots.
+    /// Exchanges new values for those from as many steps ago as there are slots.
     fn pass(&mut self, values: &mut T) {
         if !self.filled {
             self.fill(values);
@@ -207,7 +207,7 @@ pub struct DelayLine {
 }
 
 impl DelayLine {
-    /// Creates a line for vectors of a length. It returns the first one until it is full.
+    /// Creates a line for vectors of a length. It returns the first vector until it is full.
     pub fn new(steps: usize, len: usize) -> Self {
         Self {
             ring: RingBuffer::new(steps, vec![0.0; len]),
@@ -263,7 +263,7 @@ pub struct Delay {
     memory: DelayQueue,
 }
 
-/// The queue of delayed values, made from the first ones, whose size it has.
+/// The queue of delayed values, created with the size of the first ones.
 #[derive(Clone, Debug)]
 enum DelayQueue {
     Numbers(RingBuffer<Vec<f64>>, Vec<f64>),

@@ -10,7 +10,7 @@ use crate::physics::vectorize;
 use columns::FourierColumns;
 use cosines::CosineColumns;
 
-/// A picture of complex numbers, row by row, real and imaginary parts apart.
+/// A picture of complex numbers, row by row, with separate real and imaginary parts.
 #[derive(Clone, Debug)]
 pub(super) struct ComplexPicture {
     pub re: Vec<f64>,

@@ -19,7 +19,7 @@ pub struct Foveation {
     segmentation: Vec<i32>,
 }
 
-/// The source of a pixel.
+/// The source pixels of a pixel.
 #[derive(Clone, Copy, Debug)]
 struct PixelSource {
     /// Upper left, upper right, lower left, lower right.
@@ -101,7 +101,7 @@ fn reflected(place: f64, size: usize) -> usize {
     (if place < size { place } else { 2 * size - 1 - place }) as usize
 }
 
-/// Warps an image by the nearest source of each pixel.
+/// Warps an image using the nearest source of each pixel.
 fn pick<T: Copy>(image: &mut [T], before: &mut [T], sources: &[PixelSource]) {
     if image.is_empty() {
         return;

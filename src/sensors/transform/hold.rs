@@ -27,7 +27,7 @@ impl SampleHold {
         Self { kept }
     }
 
-    /// Keeps what the sense has just sampled.
+    /// Stores the sample that the sense has just taken.
     pub fn keep(&mut self, signal: &Signal<'_>) {
         match (&mut self.kept, signal) {
             (HeldValues::Numbers(kept), Signal::Numbers(values)) if kept.len() == values.len() => {
@@ -51,7 +51,7 @@ impl SampleHold {
         }
     }
 
-    /// Appends what is kept, for a snapshot.
+    /// Appends the stored sample, for a snapshot.
     pub fn save(&self, out: &mut Vec<u8>) {
         match &self.kept {
             HeldValues::Numbers(kept) => kept.save(out),

@@ -48,7 +48,7 @@ use super::{EyeImages, SkinValues};
 pub use crate::sensors::sense::Sense;
 use crate::spaces::NumpyRng;
 
-/// The values of a sense in one step, to be changed in place.
+/// The values of a sense in one step, for changes in place.
 #[derive(Debug)]
 #[non_exhaustive]
 pub enum Signal<'a> {

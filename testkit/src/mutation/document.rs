@@ -1,4 +1,4 @@
-//! Documents of MJCF, mostly well-formed: one thing of a document changed, or small ones at random.
+//! Documents of MJCF, mostly well-formed: existing documents with one change, or small random ones.
 
 use fastrand::Rng;
 
@@ -57,7 +57,7 @@ const ATTRIBUTES: [(&str, &str); 45] = [
     ("rgba", "2 0 0 1"),
 ];
 
-/// A place of an attribute in a document.
+/// The place of an attribute in a document.
 struct Attribute {
     name: std::ops::Range<usize>,
     value: std::ops::Range<usize>,

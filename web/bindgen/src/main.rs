@@ -1,5 +1,5 @@
-//! `babybench-bindgen MODULE.wasm FOLDER NAME` writes `FOLDER/NAME.js`, `FOLDER/NAME.d.ts` and `FOLDER/NAME_bg.wasm`: what
-//! wasm-bindgen's command line does for `--target web`, in the version that `Cargo.lock` names.
+//! `babybench-bindgen MODULE.wasm FOLDER NAME` writes `FOLDER/NAME.js`, `FOLDER/NAME.d.ts` and `FOLDER/NAME_bg.wasm`: the same as wasm-bindgen's
+//! command line for `--target web`, in the version that `Cargo.lock` names.
 #![forbid(unsafe_code)]
 
 use std::process::ExitCode;

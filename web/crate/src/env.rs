@@ -83,7 +83,7 @@ impl Core {
         self.env.by_hand().seed_action_space(seed);
     }
 
-    /// Sets whether the eyes are drawn on demand only, by `drawEyes`.
+    /// Sets whether the eyes are drawn only on demand, by `drawEyes`.
     #[wasm_bindgen(js_name = deferVision)]
     pub fn defer_vision(&mut self, deferred: bool) {
         self.env.senses_mut().defer_vision(deferred);
@@ -95,8 +95,8 @@ impl Core {
         done(draw_eyes([&mut self.env]))
     }
 
-    /// Returns the location of numbers: kind (1 for u8, 4 for f32, 5 for i32, 8 for f64), address, length. They stay there until a
-    /// snapshot is restored; those of the frame move with `update`.
+    /// Returns the location of numbers: kind (1 for u8, 4 for f32, 5 for i32, 8 for f64), address, length. The location stays valid until a snapshot
+    /// is restored; numbers of the frame move with `update`.
     pub fn view(&self, name: &str) -> Option<Vec<u32>> {
         let seen = self.env.observation();
         let entry = seen.entries().find(|(entry, _)| entry.field == name);
@@ -156,7 +156,7 @@ impl Core {
         scene::model(&self.env)
     }
 
-    /// Describes what is drawn, and the light.
+    /// Describes the drawables and the light.
     pub fn look(&mut self) -> Result<JsValue, JsValue> {
         let scenery = self.scenery()?;
         Ok(scene::look(self.env.model(), &scenery))
@@ -171,7 +171,7 @@ impl Core {
         Ok(level.map(|l| place(Values::U8(l.pixels.as_flattened())).to_vec()))
     }
 
-    /// Returns where each touch sensor is in the frame of its body, m.
+    /// Returns the position of each touch sensor in the frame of its body, m.
     #[wasm_bindgen(js_name = skinPositions)]
     pub fn skin_positions(&self) -> Vec<f32> {
         let bodies = self.env.senses().touch().into_iter().flat_map(|t| t.layout().bodies());
@@ -290,7 +290,7 @@ impl Core {
         report.map(|r| self.report(&r)).map_err(|e| js::env_error(&e))
     }
 
-    /// Lets MIMo make another face. Returns the configuration as YAML.
+    /// Changes MIMo's face. Returns the configuration as YAML.
     #[wasm_bindgen(js_name = swapFacialExpression)]
     pub fn swap_facial_expression(&mut self, name: &str) -> Result<String, JsValue> {
         let face = FacialExpression::from_name(name).ok_or_else(|| js::error("there is no such face"))?;
@@ -319,7 +319,7 @@ impl Core {
         done(self.env.by_hand().resume(&snapshot))
     }
 
-    /// Adds a force and a torque at a point, in the world, to what acts on a body.
+    /// Adds a force and a torque at a point, in the world, to those on a body.
     #[wasm_bindgen(js_name = applyForce)]
     pub fn apply_force(&mut self, body: usize, force: &[f64], torque: &[f64], point: &[f64]) -> Result<(), JsValue> {
         let (force, torque, point) = (three("force", force)?, three("torque", torque)?, three("point", point)?);
@@ -411,7 +411,7 @@ impl Core {
         viewer.unwrap_or_else(|| Viewer::new(self.env.blueprint()).map_err(|e| js::env_error(&e)))
     }
 
-    /// Describes what a lock changed, by names of joints.
+    /// Describes the joints that a lock changed, by name.
     fn report(&self, report: &LockReport) -> JsValue {
         let names = &self.env.model().jnt_name;
         let named = |joints: &[usize]| list(joints.iter().map(|&j| names[j].as_str()));

@@ -1,5 +1,4 @@
-//! The faces that are not in the module: their pictures would be a tenth of the download of a first visit, and are
-//! seldom shown.
+//! The faces that are not in the module: their pictures would be a tenth of the download of a first visit, and are rarely shown.
 
 use std::borrow::Cow;
 use std::cell::RefCell;
@@ -27,7 +26,7 @@ pub fn bring_face(name: &str, picture: Vec<u8>) -> Result<(), JsValue> {
     kept.map_err(js::error)
 }
 
-/// The pictures of faces as a source. A picture that was not added yet is an error that says how to add it.
+/// The pictures of faces as a source. Requesting a picture that was not added yet is an error that says how to add it.
 pub struct Faces;
 
 impl AssetSource for Faces {

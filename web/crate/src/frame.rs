@@ -6,7 +6,7 @@ use babybench::physics::State;
 use babybench::render::{PosedSkins, Poses, Scenery};
 use babybench::sensors::Touch;
 
-/// Poses, feelings and contacts of one moment.
+/// Poses, touch and contacts of one moment.
 #[derive(Default)]
 pub struct Frame {
     skins: PosedSkins,
@@ -17,7 +17,7 @@ pub struct Frame {
     pub bodies: Vec<f32>,
     /// The magnitude of each touch sensor's force, N.
     pub felt: Vec<f32>,
-    /// For each drawable that is worn (6 for each vertex of its mesh): positions of all, m, then their unit normals, in the world.
+    /// For each skin (6 for each vertex of its mesh): positions of all vertices, m, then their unit normals, in the world.
     pub worn: Vec<f32>,
     /// For each contact (8): point, m, force on the second body, N, the two bodies.
     pub contacts: Vec<f32>,

@@ -34,7 +34,7 @@ pub fn ids(ids: &[usize]) -> JsValue {
     list(ids.iter().map(|&i| id(i)))
 }
 
-/// Makes `null` of `None`.
+/// Converts `None` to `null`.
 pub fn optional<T>(value: Option<T>, make: impl FnOnce(T) -> JsValue) -> JsValue {
     value.map_or(JsValue::NULL, make)
 }
@@ -49,7 +49,7 @@ pub fn error(error: impl std::fmt::Display) -> JsValue {
     js_sys::Error::new(&error.to_string()).into()
 }
 
-/// Makes an `Error`; one of a configuration also has `key`, `line` and `column`, if known.
+/// Makes an `Error`; an error of a configuration also has `key`, `line` and `column`, if known.
 pub fn env_error(e: &EnvError) -> JsValue {
     match e {
         EnvError::Config(config) => config_error(config),

@@ -1,4 +1,4 @@
-//! The data that a page needs once: names, joints, actions, and the look of the scene.
+//! The data that a page needs only once: names, joints, actions, and the look of the scene.
 
 use babybench::Env;
 use babybench::mimo::joint_part;
@@ -90,7 +90,7 @@ fn part(m: &Model, joint: usize) -> JsValue {
     optional(joint_part(m, joint), |p| p.name().into())
 }
 
-/// Describes what is drawn, in the order of the poses, and the light.
+/// Describes the drawables, in the order of the poses, and the light.
 pub fn look(m: &Model, v: &Scenery) -> JsValue {
     object([
         ("drawables", list(v.drawables.iter().map(|d| drawable(m, v, d)))),

@@ -13,7 +13,7 @@ use wasm_bindgen::prelude::*;
 pub struct Model {
     policy: OnnxPolicy,
     space: BoxSpace,
-    /// The observation, this and the last one.
+    /// The current and the last observation.
     senses: Vec<(ObservationSpace, Array)>,
     action: Vec<f32>,
 }

@@ -15,7 +15,7 @@ import { World, WorldError } from "./world.js";
 /** @typedef {{ name: string, bytes: Uint8Array<ArrayBuffer>, url: string | null }} Network */
 /** @typedef {"scene" | "tick" | "state" | "play" | "notice" | "over" | "eyes" | "second eyes" | "tape" | "pull"} Event */
 
-/** Milliseconds between updates of numbers; faster ones could not be read. */
+/** Milliseconds between updates of numbers; faster updates would be unreadable. */
 const TICK = 100;
 
 export class App {
@@ -51,9 +51,9 @@ export class App {
     this.listeners = new Map();
     this.lastFrame = 0;
     this.lastTick = 0;
-    /** The last world that is being built, if one is. */
+    /** The last world being built, if any. */
     this.turn = Promise.resolve();
-    /** Changes that wait for their world, in order. */
+    /** Changes whose world is not built yet, in order. */
     /** @type {Settings[]} */
     this.asked = [];
     /** The picture of the second MIMo. */
@@ -293,7 +293,7 @@ export class App {
     this.world = this.connect();
   }
 
-  /** Starts the next episode, as a program does after the last one. */
+  /** Starts the next episode, as programs do when one ends. */
   async nextEpisode() {
     await this.reset(this.state.seed + 1);
     this.play(true);
@@ -418,7 +418,7 @@ export class App {
     this.notice(`${network.name} moves MIMo now. ${about}`);
   }
 
-  /** Sends the worker the state's settings of movement. */
+  /** Sends the worker the movement settings. */
   move() {
     const { policy, held, vigour, speed, seed } = this.state;
     this.world.tell("move", { policy, held, vigour, speed, seed });

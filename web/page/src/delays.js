@@ -6,14 +6,14 @@
 const DELAYS = ["delay_sensory", "delay_motor", "delay_proprioception", "delay_touch", "delay_vestibular", "delay_vision"];
 
 /**
- * The milliseconds of a unit in which a configuration counts delays.
+ * Returns the length of a configuration's unit of delay, ms.
  * @param {Settings} settings
  * @param {number} [seconds] of a step
  */
 export const unit = (settings, seconds = 0.005) => (settings.delay_unit === "ms" ? 1 : 1000 * seconds);
 
 /**
- * All delays of a configuration, counted in milliseconds.
+ * Returns all delays of a configuration in milliseconds.
  * @param {Settings} settings
  * @param {number} [seconds] of a step
  * @returns {Settings}

@@ -2,7 +2,7 @@
 
 /** @typedef {import("./types").PageState} PageState */
 
-/** Most bytes that a part of a link may unpack to: a snapshot has less than a tenth of it. */
+/** Maximum unpacked size of a part of a link, bytes: a snapshot has less than a tenth of it. */
 const MOST = 8 << 20;
 
 /**

@@ -99,7 +99,7 @@ function legend(app) {
 }
 
 /**
- * Requests pictures of the eyes, as often as a viewer can follow, while the page is visible.
+ * Requests pictures of the eyes while the page is visible, as often as a viewer can follow.
  * @param {App} app
  */
 function glances(app) {

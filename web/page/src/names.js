@@ -46,7 +46,7 @@ const WORDS = {
 };
 
 /**
- * MIMo's tasks: each has a scene and a body of its own.
+ * MIMo's tasks: each has its own scene and body.
  * @type {Record<string, { title: string, goal: string }>}
  */
 export const TASKS = {

@@ -10,7 +10,7 @@ const [MOST, COUNT] = [64 << 20, 2000];
 /** Files that operating systems leave in folders. @param {string} path */
 const hidden = (path) => path.split("/").some((part) => part.startsWith(".") || part === "__MACOSX");
 
-/** Takes files until there are too many. */
+/** A collection of files that throws once they exceed the limits. */
 class Basket {
   /** @type {[string, Uint8Array<ArrayBuffer>][]} */
   files = [];

@@ -20,7 +20,7 @@ export class Second {
     /** @type {Scene | null} */
     this.scene = null;
     this.shown = 0;
-    /** A caption for each of the two on his picture, and his score. */
+    /** A caption with his score on each infant's picture. */
     this.scores = [el("b"), el("b")];
     this.labels = this.scores.map(() => el("p", { className: "who glass" }));
     let behind = 0;

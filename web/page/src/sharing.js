@@ -8,11 +8,11 @@ import { WorldError } from "./world.js";
 /** @typedef {import("./types").PageState} PageState */
 /** @typedef {import("./link.js").Link} Link */
 
-/** Largest network in a link, packed bytes: messengers accept links of a hundred thousand characters. */
+/** Largest network in a link, packed bytes: messengers accept links of up to a hundred thousand characters. */
 const LARGEST = 64 << 10;
 /** Largest room that outlives a reload, bytes: browsers keep a few megabytes. */
 const REMEMBERED = 4 << 20;
-/** Milliseconds after a change until it is remembered: sliders change often. */
+/** Delay before a change is stored, ms: sliders change often. */
 const LATER = 300;
 
 export class Sharing {

@@ -6,7 +6,7 @@ import { serve } from "../../page/serve.mjs";
 import { launch } from "../launch.mjs";
 
 export const dist = process.env.DIST ?? fileURLToPath(new URL("../../dist", import.meta.url));
-/** Milliseconds that a test waits for the page, at most. */
+/** Maximum time that a test waits for the page, ms. */
 const PATIENCE = Number(process.env.PATIENCE ?? 120_000);
 const ARGS = ["--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--force-color-profile=srgb", "--font-render-hinting=none"];
 

@@ -80,7 +80,7 @@ impl Writer<'_> {
         }
     }
 
-    /// Names a default class, at times.
+    /// Sometimes names a default class.
     pub(super) fn class(&mut self, node: &mut Node, attribute: &str) {
         if !self.classes.is_empty() && self.dice.chance(0.2) {
             let k = self.dice.rng.usize(..self.classes.len());

@@ -7,7 +7,7 @@ use crate::differential::dice::numbers;
 use crate::differential::node::Node;
 
 impl Writer<'_> {
-    /// Returns two of some names.
+    /// Returns two of the given names.
     fn two(&mut self, names: &[String]) -> [String; 2] {
         let k = self.dice.rng.usize(..names.len());
         let other = self.dice.rng.usize(1..names.len());
@@ -355,7 +355,7 @@ impl Writer<'_> {
         section
     }
 
-    /// Draws the two geoms or bodies that a sensor is between; returns whether there are two.
+    /// Draws the two geoms or bodies of a sensor; returns whether there are two.
     fn between(&mut self, node: &mut Node) -> bool {
         let (geoms, bodies) = (self.geoms.clone(), self.bodies.clone());
         if geoms.len() < 2 || bodies.len() < 2 {
@@ -373,7 +373,7 @@ impl Writer<'_> {
         true
     }
 
-    /// Draws the object of a sensor of a frame, and at times that in whose frame it measures; returns whether there is one.
+    /// Draws the object of a frame sensor, and sometimes the object in whose frame it measures; returns whether there is one.
     fn framed(&mut self, node: &mut Node) -> bool {
         let kinds = [
             ("body", self.bodies.clone()),

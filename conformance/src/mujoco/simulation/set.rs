@@ -22,7 +22,7 @@ impl Simulation {
         unsafe { &mut *self.model.byte_add(at).cast::<T>() }
     }
 
-    /// Sets the tolerances of Newton's method and of its line search, and the largest number of iterations; returns those from before.
+    /// Sets the tolerances of Newton's method and of its line search, and the largest number of iterations; returns the previous ones.
     pub fn set_tolerance(&mut self, tolerance: f64, ls_tolerance: f64, iterations: usize) -> (f64, f64, usize) {
         let before: c_int = std::mem::replace(self.option("iterations", Kind::I32), iterations as c_int);
         (

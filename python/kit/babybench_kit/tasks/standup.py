@@ -67,7 +67,7 @@ class MIMoStandupEnv(TaskMethods):
         self.init_crouch_position = self._core.read("qpos")
 
     def compute_reward(self, achieved_goal: Any, desired_goal: Any, info: dict[str, Any]) -> float:
-        """Returns the height of the head above its sitting height, less the cost of the controls."""
+        """Returns the height of the head above its sitting height, minus the cost of the controls."""
         cost = 0.01 * float(np.square(self._core.read("ctrl")).sum())
         return float(achieved_goal) - _SITTING - cost
 

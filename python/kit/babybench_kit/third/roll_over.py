@@ -104,7 +104,7 @@ class MIMoRollOverEnv(TaskMethods, MIMoEnv):
         return float(turned if self._sign > 0 else 1 - turned)
 
     def compute_reward(self, achieved_goal: Any, desired_goal: Any, info: dict[str, Any]) -> float:
-        """Returns how far MIMo has turned, less the cost of the controls."""
+        """Returns how far MIMo has turned, minus the cost of the controls."""
         return float(achieved_goal) - _COST * float(np.square(self._core.read("ctrl")).sum())
 
     def reset_model(self) -> Observation:

@@ -277,7 +277,7 @@ class MIMoStaticMuscleTestEnv(muscle_test.MIMoStaticMuscleTestEnv, MIMoDummyEnv)
 
 
 class MIMoStaticMuscleTestV2Env(MIMoStaticMuscleTestEnv):
-    """The same with MIMo v2; MIMo's own scene names a joint that MIMo does not have, and does not load."""
+    """The same with MIMo v2. MIMo's own scene does not load: it names a joint that MIMo does not have."""
 
     def __init__(self, model_path: str | os.PathLike[str] = _XML["STATIC_TEST_XML_V2"], **kwargs: Any) -> None:
         """Compiles the scene."""

@@ -75,7 +75,7 @@ class SimpleVision(senses.SimpleVision):
         return picture
 
     def _apply_acuity(self, img: NDArray[np.uint8], camera: str) -> NDArray[np.uint8]:
-        """Returns a picture without the details that an eye of the camera's age does not see."""
+        """Returns a picture without the details that an eye of the camera's age cannot see."""
         axes = (0, 1)
         spectrum = np.fft.fftshift(np.fft.fft2(img.astype(float), axes=axes), axes=axes)
         spectrum *= self.acuity_functions[camera][..., None]

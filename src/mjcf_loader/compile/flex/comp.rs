@@ -167,7 +167,7 @@ fn check(comp: &FlexComp) -> Result<[usize; 3], &'static str> {
     Ok(comp.count.map(|x| x as usize))
 }
 
-/// Returns the points and elements that the document gives.
+/// Returns the points and elements given in the document.
 fn written(comp: &FlexComp) -> Result<FlexShape, &'static str> {
     let (points, rest) = comp.point.as_chunks::<3>();
     let whole = comp.element.len().is_multiple_of(comp.look.dim + 1);

@@ -74,7 +74,7 @@ pub(super) fn compile_flexes(
     Ok(())
 }
 
-/// Returns the poses of the bodies in the world as the document has them, each composed with that of its parent.
+/// Returns the poses of the document's bodies in the world, each composed with that of its parent.
 fn global_poses(arrays: &Arrays) -> Vec<(Vec3, Quat)> {
     let mut poses: Vec<(Vec3, Quat)> = Vec::with_capacity(arrays.nbody());
     for b in 0..arrays.nbody() {
@@ -198,7 +198,7 @@ fn turn_outside(elem: &mut [usize], places: &[Vec3]) {
     }
 }
 
-/// Returns the edges, in the order in which the elements meet them, and those of each element.
+/// Returns the edges, in the order of their first use by elements, and those of each element.
 fn edges(elem: &[usize], dim: usize) -> (Vec<[usize; 2]>, Vec<usize>) {
     let (mut edges, mut of_elements, mut known) = (Vec::new(), Vec::new(), BTreeMap::new());
     for e in elem.chunks_exact(dim + 1) {

@@ -13,7 +13,7 @@ const EMPTY: &str = "the grid has no elements: give it more points";
 const THIN: &str = "boxes, cylinders and ellipsoids need two points along each axis";
 const LONE: &str = "a circle needs a count of three at least, one more than its points";
 
-/// A shape: its points, the vertices of its elements, and texture coordinates, where it has them.
+/// A shape: its points, the vertices of its elements, and texture coordinates, if any.
 #[derive(Default)]
 pub(super) struct FlexShape {
     pub points: Vec<Vec3>,
@@ -65,7 +65,7 @@ impl FlexShape {
         Ok(shape)
     }
 
-    /// Makes tetrahedra of the triangles of a mesh and a point inside.
+    /// Makes tetrahedra from the triangles of a mesh and a point inside.
     pub fn filled(&mut self, origin: Vec3) {
         self.points.insert(0, origin);
         let triangles = std::mem::take(&mut self.elements);

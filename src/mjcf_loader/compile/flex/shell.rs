@@ -16,7 +16,7 @@ struct Side {
     /// Its vertices, ascending.
     sorted: Vec<usize>,
     elem: usize,
-    /// Its vertices as the element has them.
+    /// Its vertices in the order of the element.
     vertices: Vec<usize>,
 }
 

@@ -36,7 +36,7 @@ pub(super) fn tetrahedron(x: [Vec3; 4], material: &Elasticity) -> [f64; 21] {
     metric(&basis, volume, 4.0, material)
 }
 
-/// Returns the symmetric product of two vectors over a divisor.
+/// Returns the symmetric product of two vectors, divided by a divisor.
 fn product(a: Vec3, b: Vec3, divisor: f64) -> Mat3 {
     std::array::from_fn(|k| (a[k / 3] * b[k % 3] + b[k / 3] * a[k % 3]) / divisor)
 }

@@ -39,7 +39,7 @@ fn like_box(kind: GeomType, [a, b, c]: Vec3) -> Option<Vec3> {
     }
 }
 
-/// Returns the size of a shape about a centre that all vertices are in.
+/// Returns the size of a shape about a centre that contains all vertices.
 fn around(kind: GeomType, mesh: &Mesh, centre: Vec3) -> Option<Vec3> {
     let arms = || mesh.vert.iter().map(|v| sub(v.map(f64::from), centre));
     let across = |v: Vec3| (v[0] * v[0] + v[1] * v[1]).sqrt();

@@ -6,7 +6,7 @@ use crate::mesh::MeshInertia;
 
 /// Mass properties of a mesh, for a density of one.
 pub(super) struct MassProperties {
-    /// Volume, m^3; of a shell the area, m^2.
+    /// Volume, m^3; for a shell, the area, m^2.
     pub volume: f64,
     /// Centre of mass, m.
     pub pos: Vec3,
@@ -65,8 +65,8 @@ fn middle(vert: &[[f32; 3]], faces: &[[u32; 3]]) -> Option<Vec3> {
 }
 
 impl MassProperties {
-    /// Computes what the `counted` faces enclose, and moves the vertices to its centre. `density` scales the inertia, of which
-    /// axes are found to an absolute error.
+    /// Computes the mass properties enclosed by the `counted` faces and moves the vertices to the centre of mass. `density` scales the inertia,
+    /// because its axes are found to an absolute error.
     pub fn of(
         vert: &mut [[f32; 3]],
         faces: &[[u32; 3]],

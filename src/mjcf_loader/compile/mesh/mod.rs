@@ -52,7 +52,7 @@ pub(super) fn compile_meshes(
     Ok(())
 }
 
-/// Returns which meshes need a hull: those of geoms whose masks let them touch others. Geoms that touch only in a `<pair>` do so with all their
+/// Returns the meshes that need a hull: those of geoms whose masks let them touch others. Geoms that touch only in a `<pair>` do so with all their
 /// vertices, as in MuJoCo.
 fn touching(context: &Context, document: &TypedDocument, ids: &Ids) -> Result<Vec<bool>, LoadError> {
     let mut touching = vec![false; document.meshes.len()];
@@ -70,7 +70,7 @@ fn touching(context: &Context, document: &TypedDocument, ids: &Ids) -> Result<Ve
 const NO_HULL: &str = "the mesh has no convex hull: its vertices are on a plane, on a line or at one point";
 const HULL: &str = "rounding errors leave no hull of at most maxhullvert corners: leave maxhullvert out";
 
-/// Compiles a mesh: one that touches with a hull, and with the hull's polygons where pairs may have several contacts.
+/// Compiles a mesh. A mesh that can touch gets a hull, and the hull's polygons if pairs may have several contacts.
 fn compile(
     mesh: &Mesh,
     surface: Surface,
@@ -192,7 +192,7 @@ fn hull_of(points: &[Vec3]) -> Option<MeshHull> {
     Some(MeshHull::new(alive.map(|face| face.corner.map(|i| i as u32)).collect()))
 }
 
-/// Moves, turns and scales a mesh as the document asks.
+/// Moves, turns and scales a mesh as the document requests.
 fn transform(mesh: &Mesh, vert: &mut [[f32; 3]], normal: &mut [[f32; 3]]) {
     if mesh.refpos != [0.0; 3] {
         let origin = mesh.refpos.map(|x| x as f32);

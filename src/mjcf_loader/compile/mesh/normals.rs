@@ -1,4 +1,4 @@
-//! Normals of vertices, and the sense of faces.
+//! Normals of vertices, and the orientation of faces.
 
 use super::inertia::{Triangle, corners};
 use crate::compile::geometry::normalize;
@@ -56,7 +56,7 @@ pub(super) fn of_vertices(vert: &[[f32; 3]], faces: &[[u32; 3]], smooth: bool) -
     normals
 }
 
-/// Refuses two faces that run along an edge in the same sense.
+/// Refuses two faces that traverse an edge in the same direction.
 pub(super) fn check_orientation(vert: &[[f32; 3]], faces: &[[u32; 3]]) -> Result<(), &'static str> {
     let mut edges = Vec::with_capacity(3 * faces.len());
     for &face in faces {

@@ -6,9 +6,9 @@ use std::mem::swap;
 use crate::math::{MINVAL, Vec3, cross, dot, sub, unit};
 use crate::model::MeshPolygons;
 
-/// Cosine up to which two normals are one: of 0.0016 rad (MuJoCo's `mjFACE_TOL`).
+/// Cosine above which two normals count as one: that of 0.0016 rad (MuJoCo's `mjFACE_TOL`).
 const ONE_PLANE: f64 = 0.99999872;
-/// Twice the area below which a triangle has none, m^2 (MuJoCo's `mjEPS`).
+/// Twice the area below which a triangle counts as having no area, m^2 (MuJoCo's `mjEPS`).
 const NO_AREA: f64 = 1e-14;
 
 /// Joins triangles, each by its corners among `vert`. Their normals are those before the mesh is turned; see [`turn`].
@@ -35,8 +35,8 @@ pub(super) fn turn(polygons: &mut MeshPolygons, vert: &[[f32; 3]]) {
         .collect();
 }
 
-/// Returns the normal of a triangle. One without an area has MuJoCo's normal, which is infinite or close to it, so such triangles form a plane of
-/// their own, the first one.
+/// Returns the normal of a triangle. One without an area has MuJoCo's normal, which is infinite or close to it, so such triangles form a separate
+/// plane, the first one.
 fn normal(corners: [u32; 3], vert: &[[f32; 3]]) -> Vec3 {
     let [a, b, c] = corners.map(|k| vert[k as usize].map(f64::from));
     let (normal, twice_area) = unit(cross(sub(b, a), sub(c, a)));
@@ -53,7 +53,7 @@ struct Edges {
     all: Vec<Option<Edge>>,
     /// Indices of an edge in `all`: several if a triangle occurs twice.
     at: HashMap<[u32; 2], VecDeque<usize>>,
-    /// For each triangle one before it that it hangs together with by edges, or itself.
+    /// For each triangle an earlier one to which it is connected by edges, or itself.
     island: Vec<usize>,
 }
 
@@ -95,8 +95,8 @@ impl Edges {
         triangle
     }
 
-    /// Returns a loop of edges for each island, in the order of their first triangles. What is left of an island with a hole, or of one that
-    /// touches itself, is lost, as in MuJoCo.
+    /// Returns a loop of edges for each island, in the order of their first triangles. The remaining edges of an island that has a hole or touches
+    /// itself are lost, as in MuJoCo.
     fn paths(&mut self) -> Vec<Vec<u32>> {
         let left: Vec<Edge> = self.all.iter().copied().flatten().collect();
         if let [a, b, c] = left[..] {
@@ -158,7 +158,7 @@ struct PlaneNode {
 }
 
 impl Planes {
-    /// Adds a triangle to the plane of its normal, or with a plane of its own.
+    /// Adds a triangle to the plane of its normal, or with a new plane.
     fn add(&mut self, corners: [u32; 3], normal: Vec3) {
         // a tree that does not find the normal may still find its place taken, and then the triangle is lost
         if let Some(plane) = self.find(normal).or_else(|| self.insert(normal)) {

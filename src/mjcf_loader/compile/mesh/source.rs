@@ -7,7 +7,7 @@ use crate::formats::mesh::{MeshFormat, Triangles};
 use crate::limits::Limits;
 use crate::mesh::Mesh;
 
-/// Triangles as they are read.
+/// Triangles as they were read.
 pub(super) type Surface = Triangles;
 
 /// Reads a mesh from its file, at `path` of `source`, and its attributes, and takes the number of its elements from `left`.
@@ -65,7 +65,7 @@ pub(super) fn read(
     Ok(surface)
 }
 
-/// Returns whether a format is written as those of files are: a kind, a slash, a name.
+/// Returns whether a format is written like a media type: a kind, a slash, a name.
 fn is_content_type(text: &str) -> bool {
     text.split_once('/')
         .is_some_and(|(kind, name)| !kind.is_empty() && !name.is_empty())
@@ -106,7 +106,7 @@ fn from_file(
     })
 }
 
-/// Adds the data in the document itself. Data that the file has, too, are an error.
+/// Adds the data in the document itself. Data that the file also has are an error.
 fn own(mesh: &Mesh, surface: &mut Surface) -> Result<(), &'static str> {
     fill(
         &mut surface.vert,

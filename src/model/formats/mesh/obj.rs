@@ -1,17 +1,17 @@
 //! Wavefront's text: lines of vertices (`v`), normals (`vn`), texture coordinates (`vt`) and polygons (`f`). All vertices count, and
-//! the polygons of the first object or group that has any. Everything else is passed over, as in MuJoCo.
+//! the polygons of the first object or group that has any. Everything else is ignored, as in MuJoCo.
 
 use super::polygon::cut;
 use super::{MeshError, NONE, Triangles};
 
-/// The most characters of a word that an error quotes.
+/// Maximum number of characters of a word that an error quotes.
 const SHOWN: usize = 60;
 
-/// Corners of a polygon at least.
+/// Minimum number of corners of a polygon.
 const CORNERS: usize = 3;
-/// The most corners of a polygon: MuJoCo 3.3.0 leaves out polygons with more.
+/// Maximum number of corners of a polygon: MuJoCo 3.3.0 leaves out polygons with more.
 const MOST_CORNERS: usize = 100;
-/// The sum of the cubes of the numbers of corners: a thousand polygons of a hundred corners are far below.
+/// Limit on the sum of the cubes of the numbers of corners: a thousand polygons of a hundred corners are far below it.
 const WORK: u64 = 1 << 32;
 
 /// A corner of a polygon: vertex, texture coordinates, normal.
@@ -23,10 +23,10 @@ struct Reader {
     mesh: Triangles,
     /// Corners of the triangles.
     corners: Vec<[Corner; 3]>,
-    /// Polygons, whose triangles are known only when all vertices are: first corner and number of corners.
+    /// Polygons, by first corner and number of corners. Their triangles are known only once all vertices are read.
     polygons: Vec<Corner>,
     lengths: Vec<usize>,
-    /// Time that it takes at most to cut the polygons.
+    /// Upper bound of the time to cut the polygons.
     work: u64,
     /// Whether an object or group began after the first polygon.
     complete: bool,
@@ -146,7 +146,7 @@ fn index(text: &str, count: usize) -> Option<u32> {
     u32::try_from(place).ok().filter(|&place| place != NONE)
 }
 
-/// Reads the numbers that a line begins with.
+/// Reads the numbers at the beginning of a line.
 fn numbers<'w, const N: usize>(mut words: impl Iterator<Item = &'w str>, line: usize) -> Result<[f32; N], MeshError> {
     let mut out = [0.0; N];
     for value in &mut out {

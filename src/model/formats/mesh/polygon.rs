@@ -1,8 +1,8 @@
 //! Polygons cut into triangles by clipping ears (Meisters, "Polygons have ears", American Mathematical Monthly 82, 1975), in
 //! the order of the reader that MuJoCo 3.3.0 uses, so that triangles are the same.
 
-/// Appends the triangles of a polygon whose corners are vertices: places among `corners`. What cannot be cut, because it crosses
-/// itself, is left out.
+/// Appends the triangles of a polygon whose corners are vertices: places among `corners`. Parts that cannot be cut, because the polygon crosses
+/// itself, are left out.
 pub(super) fn cut(vert: &[[f32; 3]], corners: &[u32], out: &mut Vec<[usize; 3]>) {
     let count = corners.len();
     let flat = project(vert, corners);

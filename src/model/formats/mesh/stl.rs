@@ -4,13 +4,12 @@ use super::{MeshError, Triangles, floats, word};
 
 const HEADER: usize = 84;
 const TRIANGLE: usize = 50;
-/// The most triangles that MuJoCo takes.
+/// Maximum number of triangles that MuJoCo accepts.
 const MOST: u32 = 200_000;
-/// The largest coordinate that MuJoCo takes, 2^30.
+/// The largest coordinate that MuJoCo accepts, 2^30.
 const LARGEST: f32 = 1_073_741_824.0;
 
-/// Returns the number of triangles, the bytes that they need with the header, and the bytes of the file, which must be
-/// the same number.
+/// Returns the number of triangles, their size with the header in bytes, and the size of the file, which must be equal.
 fn sizes(bytes: &[u8]) -> Result<(usize, u64, u64), MeshError> {
     let count = word(bytes, HEADER - 4).ok_or(MeshError::Header(bytes.len()))?;
     if count == 0 || count > MOST {

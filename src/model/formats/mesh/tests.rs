@@ -98,7 +98,7 @@ fn broken_text_is_an_error_with_its_line() {
     assert_eq!(error, Err(MeshError::TooMuch(4)));
 }
 
-/// Lays triangles out as binary STL.
+/// Encodes triangles as binary STL.
 fn stl(triangles: &[[[f32; 3]; 3]]) -> Vec<u8> {
     let mut bytes = vec![0; 80];
     bytes.extend((triangles.len() as u32).to_le_bytes());
@@ -142,7 +142,7 @@ fn broken_files_announce_what_they_lack() {
     }
 }
 
-/// Lays a tetrahedron out in MuJoCo's format.
+/// Encodes a tetrahedron in MuJoCo's format.
 fn msh(header: [i32; 4], corner: u32) -> Vec<u8> {
     let mut bytes: Vec<u8> = header.iter().flat_map(|n| n.to_le_bytes()).collect();
     let vert = [0.0_f32, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0];

@@ -1,6 +1,6 @@
-//! Numbers of 16 bits, as IEEE 754 has them: 11 bits of precision, up to 65504.
+//! The 16-bit numbers of IEEE 754: 11 bits of precision, up to 65504.
 
-/// A number of 16 bits, NumPy's `float16`.
+/// A 16-bit number, NumPy's `float16`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Half(u16);
 
@@ -21,7 +21,7 @@ impl Half {
         Self(sign | magnitude)
     }
 
-    /// Returns the number of these bits.
+    /// Returns the number with these bits.
     pub fn from_bits(bits: u16) -> Self {
         Self(bits)
     }

@@ -8,7 +8,7 @@ use super::Half;
 pub(super) const DIMENSIONS: usize = 64;
 const MAGIC: &[u8; 6] = b"\x93NUMPY";
 
-/// A number of any type that is read.
+/// A number of any supported type.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Number {
     Int(i128),
@@ -63,7 +63,7 @@ pub(super) fn decoder(dtype: &str) -> Option<(usize, ReadNumber)> {
     }
 }
 
-/// Returns how many bytes a text takes, and how many a character of it, for NumPy's texts of characters and of bytes.
+/// Returns the sizes of a text and of one of its characters in bytes, for NumPy's texts of characters and of bytes.
 pub(super) fn text(dtype: &str) -> Option<(usize, usize)> {
     let (of, digits) = dtype
         .strip_prefix("<U")
@@ -169,7 +169,7 @@ impl<'t> Dictionary<'t> {
         }
     }
 
-    /// Parses the type: a string, or for a structure, which is not read, its list of fields as it stands.
+    /// Parses the type: a string, or the list of fields as written for a structure, which is not supported.
     fn dtype(&mut self) -> Option<&'t str> {
         self.0 = self.0.trim_start();
         if !self.0.starts_with('[') {

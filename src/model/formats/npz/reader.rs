@@ -38,7 +38,7 @@ impl Npz {
         Self::open_with(path, &Limits::DEFAULT)
     }
 
-    /// Reads the archive at `path` within other limits than the default ones.
+    /// Reads the archive at `path` within the given limits.
     ///
     /// # Errors
     /// As [`Npz::open`].
@@ -62,7 +62,7 @@ impl Npz {
         Self::from_bytes_with(bytes, file_name, &Limits::DEFAULT)
     }
 
-    /// Reads an archive from memory, as [`Npz::from_bytes`] does, with limits other than the default ones.
+    /// Reads an archive from memory, as [`Npz::from_bytes`] does, within the given limits.
     ///
     /// # Errors
     /// As [`Npz::from_bytes`].
@@ -272,7 +272,7 @@ impl Npz {
     }
 }
 
-/// Decodes a NumPy text, which ends where nothing but zeros follows.
+/// Decodes a NumPy text, which ends where only zeros follow.
 fn text(bytes: &[u8], of: usize) -> Option<String> {
     if of == 1 {
         let end = bytes.iter().rposition(|&byte| byte != 0).map_or(0, |last| last + 1);
@@ -286,8 +286,7 @@ fn text(bytes: &[u8], of: usize) -> Option<String> {
     decoded.map(|text| text.trim_end_matches('\0').to_string())
 }
 
-/// Checks that an array of this shape and number of bytes per value is within a limit; each dimension counts, also where
-/// another is 0.
+/// Checks that an array of this shape and number of bytes per value is within a limit; each dimension counts, even if another is 0.
 fn check_shape(shape: &[usize], width: usize, limit: usize) -> Result<(), String> {
     let mut lengths = shape.iter().map(|length| (*length).max(1));
     let bytes = lengths.try_fold(width, |bytes: usize, length| bytes.checked_mul(length));

@@ -11,7 +11,7 @@ use std::collections::BTreeSet;
 use std::io::Write;
 use std::path::Path;
 
-/// 1980-01-01, the first day a zip archive can name, as NumPy writes it.
+/// 1980-01-01, the earliest date of a zip archive, which NumPy also writes.
 const EPOCH: i64 = 315_532_800;
 
 mod sealed {
@@ -21,9 +21,9 @@ mod sealed {
     }
 }
 
-/// Marks a type of number that [`NpzWriter::add`] takes: `f64`, `f32`, `i32`, `i64`, `u16`, `u8`, [`Half`].
+/// A type of number that [`NpzWriter::add`] accepts: `f64`, `f32`, `i32`, `i64`, `u16`, `u8`, [`Half`].
 pub trait Element: Copy + sealed::Sealed {
-    /// Returns how NumPy names the type.
+    /// Returns NumPy's name of the type.
     fn dtype() -> &'static str {
         Self::DTYPE
     }
@@ -65,7 +65,7 @@ pub enum Packing {
     Small,
     /// Deflated quickly.
     Fast,
-    /// Not compressed: measured numbers hardly shrink.
+    /// Not compressed: measured numbers barely shrink.
     Stored,
 }
 
@@ -99,7 +99,7 @@ impl NpzWriter {
         self.add_packed(name, shape, data, Packing::Small)
     }
 
-    /// Adds an array as [`NpzWriter::add`] does, packed as the caller chooses.
+    /// Adds an array as [`NpzWriter::add`] does, with compression chosen by the caller.
     ///
     /// # Errors
     /// As [`NpzWriter::add`].

@@ -45,8 +45,8 @@ pub fn decode_png(bytes: &[u8], limits: &Limits) -> Result<Picture, String> {
     })
 }
 
-/// Checks a PNG picture as far as possible without decoding it, each chunk by its checksum; returns width and height, pixels. The error is as that of
-/// [`decode_png`].
+/// Checks a PNG picture as far as possible without decoding it, each chunk by its checksum; returns width and height, pixels. The error is like that
+/// of [`decode_png`].
 pub fn check_png(bytes: &[u8], limits: &Limits) -> Result<[u32; 2], String> {
     let pixels = essential(bytes, limits)?;
     let header = chunk(&pixels, SIGNATURE.len())?;
@@ -70,7 +70,7 @@ pub fn is_opaque(bytes: &[u8], limits: &Limits) -> Result<bool, String> {
                 .all(|pixel| pixel[channels - 1] == u8::MAX)))
 }
 
-/// The samples of a picture as it stores them, of 8 bits.
+/// The samples of a picture as stored, 8 bits each.
 struct Samples {
     width: usize,
     height: usize,
@@ -118,7 +118,7 @@ struct Chunk<'a> {
     whole: &'a [u8],
 }
 
-/// Returns the chunk at a byte, once its checksum is known to be right.
+/// Returns the chunk at a byte, after checking its checksum.
 fn chunk(bytes: &[u8], at: usize) -> Result<Chunk<'_>, String> {
     let rest = bytes.get(at..).unwrap_or_default();
     let Some((&length, rest)) = rest.split_first_chunk::<4>() else {
@@ -146,7 +146,7 @@ fn chunk(bytes: &[u8], at: usize) -> Result<Chunk<'_>, String> {
     Ok(Chunk { at, name, data, whole })
 }
 
-/// Returns the picture with only the chunks that make its pixels, each of them checked.
+/// Returns the picture with only the chunks that define its pixels, each of them checked.
 fn essential(bytes: &[u8], limits: &Limits) -> Result<Vec<u8>, String> {
     if !bytes.starts_with(SIGNATURE) {
         return Err("not a PNG picture: it does not start with the bytes of one".to_string());

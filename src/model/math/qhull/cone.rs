@@ -1,4 +1,4 @@
-//! Facets that a new point sees, and the new facets that join it to their border.
+//! The facets visible from a new point, and the new facets that join the point to their border.
 
 use super::Builder;
 use super::parts::{HullFailure, HullResult, Id, NONE, TAIL, drop_swapping, replace};

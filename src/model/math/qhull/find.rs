@@ -1,4 +1,4 @@
-//! The facet that a point is highest above.
+//! The facet above which a point is highest.
 
 use super::Builder;
 use super::parts::{HullFailure, HullResult, Id, NONE};
@@ -12,11 +12,11 @@ pub(super) struct FacetDistance {
     pub(super) outside: bool,
 }
 
-/// Stands for a distance that every other is above.
+/// A distance below all others.
 const BELOW_ALL: f64 = -f64::MAX / 2.0;
 
 impl Builder<'_> {
-    /// Returns whether there were enough merges that new facets are searched one by one, with doubled tolerances (`qh_USEfindbestnew`).
+    /// Returns whether there were so many merges that new facets are searched one by one, with doubled tolerances (`qh_USEfindbestnew`).
     pub(super) fn merged_much(&self) -> bool {
         self.merge_count > 50
     }
@@ -114,7 +114,7 @@ impl Builder<'_> {
         (highest, at)
     }
 
-    /// Searches all new facets, from one on (`qh_findbestnew`), then beyond the best.
+    /// Searches all new facets, starting with one (`qh_findbestnew`), then beyond the best.
     pub(super) fn find_best_of_new(&mut self, point: u32, start: Id, best: bool) -> HullResult<FacetDistance> {
         if !Self::listed(start) {
             return Err(HullFailure);

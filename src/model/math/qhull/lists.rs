@@ -1,4 +1,4 @@
-//! The lists of facets and of vertices. Their order decides the hull's: new and changed ones go to the end.
+//! The lists of facets and of vertices. Their order determines that of the hull: new and changed ones go to the end.
 
 use super::Builder;
 use super::parts::{Facet, HullFailure, HullResult, Id, NONE, TAIL, Vertex};
@@ -10,7 +10,7 @@ impl Builder<'_> {
         id != NONE && id != TAIL
     }
 
-    /// Returns the facets of a list from one on (`FORALLfacet_`), as they are now.
+    /// Returns the current facets of a list, starting with one (`FORALLfacet_`).
     pub(super) fn facets_from(&self, first: Id) -> Vec<Id> {
         let mut all = Vec::new();
         let mut facet = first;
@@ -112,7 +112,7 @@ impl Builder<'_> {
         Ok(())
     }
 
-    /// Moves a facet before the one that is worked on next.
+    /// Moves a facet before the one that is processed next.
     pub(super) fn work_on_next(&mut self, facet: Id) -> HullResult {
         self.remove_facet(facet)?;
         self.insert_facet(facet, self.next_facet);
@@ -205,7 +205,7 @@ impl Builder<'_> {
         Ok(())
     }
 
-    /// Returns the vertices of a list from one on, as they are now.
+    /// Returns the current vertices of a list, starting with one.
     pub(super) fn vertices_from(&self, first: Id) -> Vec<Id> {
         let mut all = Vec::new();
         let mut vertex = first;
@@ -216,7 +216,7 @@ impl Builder<'_> {
         all
     }
 
-    /// Returns the facets that are to be removed, as they are now.
+    /// Returns the facets that are currently to be removed.
     pub(super) fn visible(&self) -> Vec<Id> {
         let mut all = Vec::new();
         let mut facet = self.visible_facets;

@@ -155,8 +155,7 @@ impl Builder<'_> {
         Ok(closed)
     }
 
-    /// Marks a facet at a shared edge as seen. Returns the place of the neighbour beyond the edge, and the facets there that were not
-    /// seen yet, with theirs.
+    /// Marks a facet at a shared edge as seen. Returns the place of the neighbour beyond the edge, and the unseen facets there with their places.
     fn beside(&mut self, facet: Id, waiting: &[Id], vertex: Id) -> (usize, Vec<(Id, usize)>) {
         self.facets[facet].visit = self.visit;
         let unseen = |other: &Id| self.facets[*other].dup_ridge && self.facets[*other].visit != self.visit;
@@ -165,7 +164,7 @@ impl Builder<'_> {
         (self.edge_place(facet, vertex), others)
     }
 
-    /// Looks through the consistent pairs at a shared edge.
+    /// Searches the consistent pairs at a shared edge.
     fn choose_pair(&mut self, waiting: &[Id], vertex: Id, at: Id) -> HullResult<FacetMatch> {
         let mut choice = FacetMatch::default();
         self.visit += 1;

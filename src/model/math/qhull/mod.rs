@@ -32,7 +32,7 @@ use tolerance::{Tolerance, larger};
 pub struct Hull {
     /// Points that are corners.
     pub corners: Vec<u32>,
-    /// Of each corner the points that it has an edge to.
+    /// For each corner, the points to which it has an edge.
     pub edges: Vec<Vec<u32>>,
     /// Points at the corners of each triangle, counterclockwise from outside.
     pub triangles: Vec<[u32; 3]>,
@@ -154,8 +154,8 @@ impl<'p> Builder<'p> {
         self.most_outside = larger(merged, self.tolerance.outside);
     }
 
-    /// Adds a point to the hull (`qh_addpoint`): facets that it sees go, new ones join their border to it, what is not convex is
-    /// merged, and points of the facets that went are handed on.
+    /// Adds a point to the hull (`qh_addpoint`): visible facets are removed, new ones join their border to the point, facets that are not convex are
+    /// merged, and points of the removed facets are reassigned.
     fn add_point(&mut self, point: u32, facet: Id) -> HullResult {
         self.bound_outside();
         self.find_horizon(point, facet)?;
@@ -188,8 +188,7 @@ impl<'p> Builder<'p> {
         Ok(())
     }
 
-    /// Returns the hull as MuJoCo reads it from Qhull's lists: of each vertex the other vertices of its facets, in the order in
-    /// which they come first.
+    /// Returns the hull as MuJoCo reads it from Qhull's lists: for each vertex, the other vertices of its facets, in the order of first occurrence.
     fn read(&self) -> Hull {
         let mut hull = Hull::default();
         for vertex in self.vertices_from(self.first_vertex) {
@@ -216,8 +215,8 @@ impl<'p> Builder<'p> {
     }
 }
 
-/// Builds the hull of points, of at most `most` corners if it is given: those that are found first. `None` where Qhull would
-/// end with an error, as when the points span no volume.
+/// Builds the hull of points, with at most the first `most` corners if it is given. `None` if Qhull would end with an error, for example because the
+/// points span no volume.
 pub fn hull(points: &[Vec3], most: Option<usize>) -> Option<Hull> {
     if points.len() < 4 || points.len() >= (u32::MAX / 8) as usize {
         return None;

@@ -1,4 +1,4 @@
-//! Points that are handed to the facets that they are above.
+//! Assignment of points to the facets that they are above.
 
 use super::Builder;
 use super::find::FacetDistance;
@@ -32,7 +32,7 @@ impl Builder<'_> {
         None
     }
 
-    /// Computes again how high the highest point is (`qh_furthestout`, which leaves the order as it is).
+    /// Recomputes the height of the highest point (`qh_furthestout`, which leaves the order as it is).
     fn measure_farthest(&mut self, facet: Id) {
         let mut best = f64::MIN;
         for &point in &self.facets[facet].outside {

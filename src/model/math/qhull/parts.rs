@@ -8,9 +8,9 @@ use crate::math::Vec3;
 pub(super) type Id = u32;
 /// No facet, vertex or ridge.
 pub(super) const NONE: Id = u32::MAX;
-/// Stands among the neighbours of a new facet for an edge that more than two new facets share (a duplicated ridge, in Qhull's words).
+/// Marks, among the neighbours of a new facet, an edge that more than two new facets share (a duplicated ridge, in Qhull's words).
 pub(super) const SHARED: Id = u32::MAX - 1;
-/// Stands there for such an edge once it is known that its facets must be merged (`qh_MERGEridge`).
+/// Marks such an edge once it is known that its facets must be merged (`qh_MERGEridge`).
 pub(super) const FORCED: Id = u32::MAX - 2;
 /// The end of the lists of facets and of vertices: the first entry of either arena is not part of the hull.
 pub(super) const TAIL: Id = 0;
@@ -31,13 +31,13 @@ impl<T: Default> Arena<T> {
         Self(vec![T::default()])
     }
 
-    /// Adds a thing; returns its place.
+    /// Adds an item; returns its place.
     pub(super) fn push(&mut self, item: T) -> Id {
         self.0.push(item);
         (self.0.len() - 1) as Id
     }
 
-    /// Returns the number of things, the end of the list among them.
+    /// Returns the number of items, including the end of the list.
     pub(super) fn len(&self) -> usize {
         self.0.len()
     }
@@ -68,7 +68,7 @@ pub(super) struct Facet {
     pub(super) next: Id,
     /// Vertices, the latest first.
     pub(super) vertices: Vec<Id>,
-    /// Facets beyond the edges: of a triangle the nth is opposite the nth vertex, of others the order is that of merging.
+    /// Facets beyond the edges: in a triangle, the nth is opposite the nth vertex; in others, the order is that of merging.
     pub(super) neighbors: Vec<Id>,
     /// Edges; a triangle has entries for those that it shares with polygons.
     pub(super) ridges: Vec<Id>,
@@ -129,7 +129,7 @@ pub(super) struct Vertex {
     pub(super) next: Id,
     /// Index of the point.
     pub(super) point: u32,
-    /// Facets that it is a vertex of, kept up from the first merge on.
+    /// Facets of which it is a vertex, kept up to date from the first merge on.
     pub(super) neighbors: Vec<Id>,
     pub(super) visit: u32,
     pub(super) seen: bool,
@@ -137,7 +137,7 @@ pub(super) struct Vertex {
     /// Lost an edge by merging.
     pub(super) lost_ridge: bool,
     pub(super) deleted: bool,
-    /// Its point was handed to a facet after the vertex was deleted.
+    /// Its point was assigned to a facet after the vertex was deleted.
     pub(super) partitioned: bool,
 }
 

@@ -40,8 +40,8 @@ fn normalize(normal: &mut Vec3, top: bool, largest: f64) {
     }
 }
 
-/// The normal of a plane by Gauss' elimination with pivots, from the differences of two corners to the first.
-/// Second, whether a pivot was too small to be told from 0.
+/// The normal of a plane by Gauss' elimination with pivots, from the differences of two corners to the first. The second value is whether a pivot was
+/// too small to be distinguished from 0.
 fn eliminate(rows: [Vec3; 2], top: bool, near_zero: Vec3, largest: f64) -> (Vec3, bool) {
     let [mut a, mut b] = rows;
     let (mut sign, mut small) = (top, false);
@@ -103,7 +103,7 @@ impl Builder<'_> {
         self.points.get(point as usize).copied().unwrap_or([0.0; 3])
     }
 
-    /// Returns how far a point is above a facet (`qh_distplane`): the order of the sum decides the last bits.
+    /// Returns the height of a point above a facet (`qh_distplane`); the order of the sum determines the last bits.
     #[inline(always)]
     pub(super) fn distance(&self, p: Vec3, facet: Id) -> f64 {
         let facet = &self.facets[facet];
@@ -178,7 +178,7 @@ impl Builder<'_> {
         })
     }
 
-    /// Returns the centre of a facet, computed where it is not yet (`qh_getcentrum`).
+    /// Returns the centre of a facet, computing it if necessary (`qh_getcentrum`).
     pub(super) fn center(&mut self, facet: Id) -> Vec3 {
         if let Some(center) = self.facets[facet].center {
             return center;
@@ -191,8 +191,8 @@ impl Builder<'_> {
         center
     }
 
-    /// Returns how far the vertices that a facet does not share with another are from the other's plane: the most on either side,
-    /// the least, the greatest (`qh_getdistance`).
+    /// Returns the distances from another facet's plane of the vertices that a facet does not share with it: the largest on either side, the least,
+    /// the greatest (`qh_getdistance`).
     pub(super) fn spread(&mut self, facet: Id, other: Id) -> [f64; 3] {
         for (of, seen) in [(facet, false), (other, true)] {
             for i in 0..self.facets[of].vertices.len() {

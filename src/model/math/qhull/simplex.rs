@@ -130,7 +130,7 @@ impl Builder<'_> {
         Ok(corners)
     }
 
-    /// Turns all facets where one is not below the point inside; notes whether the hull is a needle.
+    /// Flips all facets if the interior point is above one of them; notes whether the hull is a needle.
     fn orient_first(&mut self, all: &[Id]) -> HullResult {
         for &facet in all {
             self.facets[facet].flipped = false;
@@ -218,7 +218,7 @@ impl Builder<'_> {
         Ok(())
     }
 
-    /// Begins with the facet that the farthest point is above (`qh_furthestnext`).
+    /// Begins with the facet below the farthest point (`qh_furthestnext`).
     pub(super) fn begin_farthest(&mut self) -> HullResult {
         self.next_facet = self.first_facet;
         let mut best = (TAIL, f64::MIN);

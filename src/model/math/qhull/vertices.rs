@@ -4,7 +4,7 @@ use super::Builder;
 use super::parts::{Id, NONE, drop_swapping, push_unique};
 
 impl Builder<'_> {
-    /// Finds the facets of all vertices, before the first merge (`qh_vertexneighbors`); from then on they are kept up.
+    /// Finds the facets of all vertices, before the first merge (`qh_vertexneighbors`); from then on they are kept up to date.
     pub(super) fn find_vertex_neighbors(&mut self) {
         if self.has_neighbors {
             return;

@@ -11,7 +11,7 @@ struct Geom {
     contype: u32,
     conaffinity: u32,
     body: u32,
-    /// The first body of those that its body is rigidly joined to, and the same of the parent of that one.
+    /// The first of the bodies to which its body is rigidly joined, and the same for the parent of that body.
     weld: u32,
     weld_parent: u32,
 }
@@ -69,7 +69,7 @@ impl ContactRules {
         self.geoms.len()
     }
 
-    /// Returns whether a geom may touch any other, as far as its own properties say.
+    /// Returns whether a geom may touch any other, according to its own properties.
     pub(super) fn takes_part(&self, g: usize) -> bool {
         let geom = &self.geoms[g];
         geom.contype | geom.conaffinity != 0 || self.explicit.iter().any(|(geoms, _)| geoms.contains(&(g as u32)))

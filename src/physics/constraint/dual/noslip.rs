@@ -77,8 +77,8 @@ impl DualSolver {
         if row == col { value - efc.r[row] } else { value }
     }
 
-    /// Returns an entry of the matrix of a contact's friction. Directions in which nothing can move count as MuJoCo counts them: what it
-    /// finds to be singular, where forces stay as they are, depends on it.
+    /// Returns an entry of the matrix of a contact's friction. Directions in which nothing can move are treated as in MuJoCo, because they decide
+    /// which matrices count as singular and leave forces unchanged.
     #[inline(always)]
     fn of_contact(&self, efc: &Efc, row: usize, col: usize) -> f64 {
         let value = self.rigid(efc, row, col);
@@ -106,7 +106,7 @@ impl DualSolver {
         0.5 * moved * moved / inverse + moved * residual
     }
 
-    /// Improves the friction of a pyramid: opposite edges, whose sum stays. Returns the change of the cost.
+    /// Improves the friction of a pyramid: opposite edges, whose sum stays constant. Returns the change of the cost.
     #[inline(always)]
     fn pyramid(&mut self, efc: &mut Efc, block: &Block) -> f64 {
         let mut change = 0.0;

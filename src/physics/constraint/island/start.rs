@@ -73,7 +73,7 @@ impl Island {
         }
     }
 
-    /// Returns whether the acceleration, whose cost is `cost`, is sure to cost less than the one without constraints.
+    /// Returns whether the acceleration, whose cost is `cost`, certainly costs less than the one without constraints.
     ///
     /// The cost is convex, and as curved as the inertia `M` at least. So the cost without constraints exceeds this one by
     /// `gradient d + d M d / 2` or more, where `d` leads from here to there. What rounding may hide counts as unsure.

@@ -6,7 +6,7 @@ use super::{Articulated, Link};
 use crate::spatial::Spatial;
 use crate::state::State;
 
-/// A number of each of four right sides, or solutions.
+/// One number for each of four right sides or solutions.
 pub type Four = [f64; 4];
 
 /// A force of each.

@@ -13,7 +13,7 @@ pub(super) struct DistanceScratch {
     points: Vec<ContactPoint>,
 }
 
-/// Iterates over the geoms that a side of a sensor is.
+/// Iterates over the geoms on one side of a sensor.
 fn geoms(model: &Model, kind: ObjType, id: Option<usize>) -> std::ops::Range<usize> {
     let id = id.unwrap_or(0);
     match kind {

@@ -5,7 +5,7 @@ use crate::model::{JointType, Model};
 use crate::spatial::*;
 use crate::state::State;
 
-/// Returns the energy of heights, and of the springs of joints and tendons, J.
+/// Returns the potential energy of gravity and of the springs of joints and tendons, J.
 #[doc(alias = "mj_energyPos")]
 pub(super) fn potential(model: &Model, s: &State) -> f64 {
     let weights = (1..model.nbody()).map(|b| s.params.body_mass[b] * dot(s.params.gravity, s.xipos[b]));
@@ -54,7 +54,7 @@ pub(super) fn potential(model: &Model, s: &State) -> f64 {
     energy
 }
 
-/// Returns the energy of motion, J, that of the rotors of motors included.
+/// Returns the kinetic energy, J, including that of the motors' rotors.
 #[doc(alias = "mj_energyVel")]
 pub(super) fn kinetic(model: &Model, s: &State) -> f64 {
     let bodies = (1..model.nbody()).map(|b| dot6(&s.cvel[b], &inertia_mul(&s.cinert[b], &s.cvel[b])));

@@ -44,7 +44,7 @@ fn framed(model: &Model, s: &State, kind: ObjType, id: Option<usize>) -> Option<
     Some(FrameObject { body, pos, mat, quat })
 }
 
-/// Returns the value of a sensor of a frame.
+/// Returns the value of a frame sensor.
 pub(super) fn frame(model: &Model, s: &State, sensor: usize) -> [f64; 4] {
     let kind = model.sensor_type[sensor];
     let Some(object) = framed(model, s, model.sensor_objtype[sensor], model.sensor_objid[sensor]) else {
@@ -87,14 +87,14 @@ pub(super) fn frame(model: &Model, s: &State, sensor: usize) -> [f64; 4] {
     }
 }
 
-/// Returns angular velocity, and velocity at a point of a body, in the axes of the world; `offset` is from the centre of mass of
+/// Returns the angular velocity, and the velocity at a point of a body, in the axes of the world; `offset` is from the centre of mass of
 /// the body's tree.
 pub(super) fn spatial_velocity(s: &State, body: usize, offset: Vec3) -> Spatial {
     let v = &s.cvel[body];
     spatial(angular(v), velocity_at(v, offset))
 }
 
-/// Returns angular acceleration, and acceleration at a point of a body, likewise. Gravity counts as upward acceleration.
+/// Returns the angular acceleration, and the acceleration at a point of a body, likewise. Gravity counts as upward acceleration.
 pub(super) fn spatial_acceleration(s: &State, body: usize, offset: Vec3) -> Spatial {
     let (v, a) = (&s.cvel[body], &s.cacc[body]);
     let moving = add(velocity_at(a, offset), cross(angular(v), velocity_at(v, offset)));

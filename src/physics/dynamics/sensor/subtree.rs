@@ -1,4 +1,4 @@
-//! Velocity and angular momentum of bodies with all below them.
+//! Velocity and angular momentum of bodies together with all bodies below them.
 
 use crate::math::*;
 use crate::model::Model;

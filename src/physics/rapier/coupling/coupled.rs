@@ -84,7 +84,7 @@ fn with_slots(document: &Document, options: &CouplingOptions) -> Result<Document
     Ok(document)
 }
 
-/// Copies the world of a document into that of another. Their settings do not matter, because slots give all their numbers.
+/// Copies the world of a document into that of another. The documents' settings do not matter, because slots state all their numbers.
 fn copy_children(to: &mut Document, from: &Document, world: ElementId) -> Result<(), EditError> {
     let mut open = vec![(world, to.world())];
     while let Some((source, target)) = open.pop() {

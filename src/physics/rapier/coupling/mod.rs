@@ -154,7 +154,7 @@ pub struct Coupling {
     touching: Vec<usize>,
     /// Poses of the model after the last step.
     posed: State,
-    /// Whether the model has the neighbors.
+    /// Whether the model contains the neighbors.
     written: bool,
 }
 
@@ -211,7 +211,7 @@ impl Coupling {
         })
     }
 
-    /// Returns how many steps of the model a step of the world takes.
+    /// Returns the number of model steps per step of the world.
     ///
     /// # Errors
     /// The time step of the world is not a multiple of the model's.
@@ -266,7 +266,7 @@ impl Coupling {
         })))
     }
 
-    /// Writes the numbers of the slots, of a model that [`Coupling::update`] returned, into parameters.
+    /// Writes the slots' numbers from a model that [`Coupling::update`] returned into parameters.
     pub fn adopt(&self, model: &Model, params: &mut Params) {
         edit::write_params(params, model, &self.slots);
     }
@@ -277,7 +277,7 @@ impl Coupling {
         exchange::load(state, &self.slots, &self.neighbors.all, sets, self.frame);
     }
 
-    /// Notes what the contacts of a step of the model do to the neighbors. The state is as the engine left it.
+    /// Records the effect of the contacts of a model step on the neighbors. The state must be as the engine left it.
     pub fn record(&mut self, model: &Model, state: &State) {
         let h = model.opt.timestep;
         exchange::record(state, model, &self.slots, h, &mut self.impulses);
@@ -404,7 +404,7 @@ impl Coupling {
     }
 }
 
-/// Computes the poses of a state in another.
+/// Computes the poses of a state in another state.
 fn place(model: &Model, state: &State, posed: &mut State) -> Result<(), EngineError> {
     let lengths = [
         ("qpos", state.qpos.len(), model.nq),

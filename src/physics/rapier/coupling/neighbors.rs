@@ -12,7 +12,7 @@ use super::shapes::{GeomRow, GeomText};
 use super::slots::Slots;
 use super::{CouplingError, CouplingOptions, Material, WorldSets};
 
-/// Distance from a neighbor below which a fixed collider is a neighbor, too, m: the neighbor may stand on it.
+/// Distance from a neighbor below which a fixed collider is also a neighbor, m: the neighbor may stand on it.
 const BENEATH: f64 = 0.02;
 
 /// The part of the world that a neighbor stands for.
@@ -20,7 +20,7 @@ const BENEATH: f64 = 0.02;
 pub(super) enum Source {
     /// A dynamic or kinematic body.
     Body(RigidBodyHandle),
-    /// A collider without a body, or of a fixed one.
+    /// A collider without a body, or of a fixed body.
     Fixed(ColliderHandle),
 }
 
@@ -28,7 +28,7 @@ pub(super) enum Source {
 #[derive(Clone)]
 struct SeenCollider {
     handle: ColliderHandle,
-    /// Kept, so that a program that changes the shape gets a copy of its own, and the change is noticed.
+    /// A reference to the shape, so that a program that changes the shape gets its own copy and the change is noticed.
     shape: SharedShape,
     at: Pose,
     friction: f64,
@@ -61,7 +61,7 @@ pub(super) struct Inertia {
     /// Mass, kg, and moments, kg m^2.
     pub mass: f64,
     pub moments: [f64; 3],
-    /// Linear and angular damping, 1/s, as Rapier has it.
+    /// Linear and angular damping, 1/s, as in Rapier.
     pub damping: [f64; 2],
 }
 
@@ -73,7 +73,7 @@ pub(super) struct Neighbor {
     local: Option<(MassProperties, RigidBodyType, LockedAxes)>,
     /// Inertia in the model; `None` for fixed colliders.
     pub inertia: Option<Inertia>,
-    /// Whether what touches it moves it.
+    /// Whether contacts move it.
     pub moved: bool,
     /// Its geoms with their materials, and the places of their colliders in `seen`.
     pub geoms: Vec<(GeomRow, Material, usize)>,
@@ -105,7 +105,7 @@ impl Neighbor {
 #[derive(Clone, Default)]
 pub(super) struct Neighbors {
     pub all: Vec<Neighbor>,
-    /// Fixed colliders that the model brought along. They are not neighbors.
+    /// Fixed colliders that the model added. They are not neighbors.
     pub own: Vec<ColliderHandle>,
     /// Scratch: boxes around bodies that are neighbors.
     boxes: Vec<Aabb>,
@@ -120,7 +120,7 @@ fn touches(collider: &Collider, groups: InteractionGroups) -> bool {
         && collider.solver_groups().test(InteractionGroups::all())
 }
 
-/// Returns what a collider's neighbor would be; `None` if it cannot be one.
+/// Returns the neighbor that a collider would become; `None` if it cannot be one.
 fn source(handle: ColliderHandle, collider: &Collider, sets: &WorldSets<'_>) -> Option<Source> {
     match collider.parent() {
         None => Some(Source::Fixed(handle)),
@@ -135,13 +135,13 @@ fn source(handle: ColliderHandle, collider: &Collider, sets: &WorldSets<'_>) -> 
     }
 }
 
-/// Returns a distance that a body may cover in two steps, m.
+/// Returns the distance that a body may cover in two steps, m.
 fn reach(body: &RigidBody, dt: f64) -> f64 {
     2.0 * dt * body.linvel().length()
 }
 
 impl Neighbors {
-    /// Returns none, for a model that brought colliders along.
+    /// Returns an empty set, for a model that added its own colliders.
     pub fn new(own: Vec<ColliderHandle>) -> Self {
         Self { own, ..Self::default() }
     }
@@ -205,7 +205,7 @@ impl Neighbors {
         self.all.len() != before
     }
 
-    /// Notes where the bodies among the neighbors are.
+    /// Stores the positions of the bodies among the neighbors.
     fn find_boxes(&mut self, sets: &WorldSets<'_>) {
         self.boxes.clear();
         for n in &self.all {
@@ -277,7 +277,7 @@ impl Neighbors {
     }
 }
 
-/// Makes a neighbor, without slots. Of fixed meshes it has the part in a region.
+/// Makes a neighbor without slots. For fixed meshes it contains only the part in a region.
 pub(super) fn meet(
     source: Source,
     sets: &WorldSets<'_>,

@@ -53,18 +53,18 @@ pub struct CouplingOptions {
     /// Greatest number of dynamic and kinematic bodies of several shapes near the model at a time. They also take bodies of one shape,
     /// if those exceed `bodies`.
     pub compounds: usize,
-    /// Greatest number of shapes of one of these.
+    /// Greatest number of shapes of one such body.
     pub compound_shapes: usize,
     /// Greatest number of shapes of fixed bodies near the model at a time, and of triangles of fixed meshes.
     pub fixed: usize,
     /// Distance from the model's bounding box below which a body becomes a neighbor, m. It stays one up to twice the distance.
     pub near: f64,
-    /// Mass that a kinematic body has in the model, kg. It has to be large compared with what touches it.
+    /// Mass that a kinematic body has in the model, kg. It must be large compared with the masses that touch it.
     pub kinematic_mass: f64,
-    /// Whether the model's own fixed geoms, such as a floor, come along: as fixed colliders in the world. Otherwise they touch nothing
+    /// Whether the model's own fixed geoms, such as a floor, are added to the world as fixed colliders. Otherwise they touch nothing
     /// and are not drawn.
     pub scenery: bool,
-    /// Groups of the model's colliders, for collisions and queries. Colliders of the world whose groups do not match these do not touch
+    /// Groups of the model's colliders for collisions and queries. Colliders of the world whose groups do not match these do not touch
     /// the model.
     pub groups: InteractionGroups,
     /// The materials of colliders.

@@ -1,4 +1,4 @@
-//! The model in the world: kinematic bodies that queries find and that push nothing.
+//! The model's proxies in the world: kinematic bodies that queries find and that push nothing.
 
 use mjcf_sim_model::Model;
 use mjcf_sim_model::math::Vec3;
@@ -16,7 +16,7 @@ use crate::scene::{geom_pose, pose, shape};
 pub(super) struct Proxies {
     /// Kinematic bodies, with the bodies of the model that they follow.
     bodies: Vec<(RigidBodyHandle, usize)>,
-    /// The collider of each geom (ngeom); `None` for slots, and for fixed geoms that stay away.
+    /// The collider of each geom (ngeom); `None` for slots, and for fixed geoms that are not added to the world.
     pub colliders: Vec<Option<ColliderHandle>>,
     /// Size of each geom in the world.
     sizes: Vec<Vec3>,

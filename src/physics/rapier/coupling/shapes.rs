@@ -41,7 +41,7 @@ pub(super) struct GeomText {
     count: usize,
     /// Whether the body is fixed: planes, meshes and height fields keep their shapes then.
     fixed: bool,
-    /// The part of a fixed mesh that counts, in its body.
+    /// The region of a fixed mesh that is used, in its body.
     region: Option<Aabb>,
 }
 
@@ -125,7 +125,7 @@ impl GeomText {
         self.mesh(points(&corners), at);
     }
 
-    /// Adds a triangle as the prism below it: outside is where its corners are counterclockwise.
+    /// Adds a triangle as the prism below it; its corners are counterclockwise from outside.
     fn triangle(&mut self, [a, b, c]: [Vector; 3], at: Pose) {
         let normal = (b - a).cross(c - a);
         let area = normal.length();
@@ -150,7 +150,7 @@ impl GeomText {
         }
     }
 
-    /// Adds a height field: Parry's along x and z with heights along y, MJCF's along x and y with heights along z.
+    /// Adds a height field. Parry's extends along x and z with heights along y, MJCF's along x and y with heights along z.
     fn height_field(&mut self, field: &HeightField, at: Pose) {
         let (heights, scale) = (field.heights(), field.scale());
         let (nrow, ncol) = (heights.nrows(), heights.ncols());
@@ -222,7 +222,7 @@ impl GeomText {
         self.geom("cylinder", &[radius, half_height], at * upright);
     }
 
-    /// Compiles the geoms. With `multiccd` meshes have what such models need.
+    /// Compiles the geoms. With `multiccd`, meshes also get polygons.
     pub fn compile(&self, multiccd: bool) -> Result<Vec<GeomRow>, LoadError> {
         let (assets, geoms) = (&self.assets, &self.geoms);
         let flag = if multiccd { "enable" } else { "disable" };

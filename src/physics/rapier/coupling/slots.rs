@@ -7,7 +7,7 @@ use mjcf_sim_model::Model;
 
 use super::{CouplingError, CouplingOptions};
 
-/// Precedes the names of slots.
+/// Prefix of the names of slots.
 const PREFIX: &str = "rapier_";
 
 /// The body of a slot in the model.
@@ -17,7 +17,7 @@ pub(super) struct Slot {
     pub body: usize,
     /// First position and first velocity of its free joint; `None` for slots of fixed shapes, which are mocap bodies.
     pub joint: Option<[usize; 2]>,
-    /// Row in `mocap_pos`, of slots of fixed shapes.
+    /// Row in `mocap_pos`, for slots of fixed shapes.
     pub mocap: usize,
     /// Its geoms, by id.
     pub geoms: Range<usize>,
@@ -26,7 +26,7 @@ pub(super) struct Slot {
 /// All slots of a model.
 #[derive(Clone, Debug)]
 pub(super) struct Slots {
-    /// Those with a free joint: for one shape first, then for several, then for fixed shapes.
+    /// Slots with a free joint for one shape, then those for several shapes, then slots for fixed shapes.
     pub all: Vec<Slot>,
     /// Number of slots of one shape.
     pub bodies: usize,

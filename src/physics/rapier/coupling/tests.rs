@@ -32,7 +32,7 @@ fn step(model: &mut CoupledSimulation, world: &mut PhysicsWorld) {
     world.step();
 }
 
-/// Copies the state that a world continues from.
+/// Copies the state from which a world continues.
 fn copy_of(world: &PhysicsWorld) -> PhysicsWorld {
     let mut copy = PhysicsWorld::new();
     copy.gravity = world.gravity;
@@ -51,7 +51,7 @@ fn down(world: &mut PhysicsWorld) {
     world.gravity = Vector::new(0.0, 0.0, -9.81);
 }
 
-/// A cup that floats, with a piston for a floor.
+/// A floating cup with a piston for a floor.
 const CUP: &str = "<mujoco><option timestep='.005'/><worldbody><body name='cup'><freejoint/>
     <geom type='box' size='.2 .01 .1' pos='0 .2 .1' mass='.5'/><geom type='box' size='.2 .01 .1' pos='0 -.2 .1' mass='.5'/>
     <geom type='box' size='.01 .2 .1' pos='.2 0 .1' mass='.5'/><geom type='box' size='.01 .2 .1' pos='-.2 0 .1' mass='.5'/>
@@ -118,7 +118,7 @@ fn a_ball_rests_on_a_bowl_as_in_the_model_alone() {
     assert!((force / weight - 1.0).abs() < 0.01, "{force} N of {weight} N");
 }
 
-/// A ball of the model that falls on what the world has at the origin: its height after two seconds.
+/// The height, after two seconds, of a ball of the model that falls on the world's collider at the origin.
 fn rest_on(shape: ColliderBuilder, y_up: bool) -> f64 {
     let ball = "<mujoco><option timestep='.005'/><worldbody><body pos='.02 .03 .3'><freejoint/><geom size='.05' condim='6' friction='1 .1 .1'/></body>
         </worldbody></mujoco>";

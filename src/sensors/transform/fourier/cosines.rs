@@ -92,7 +92,7 @@ impl CosineColumns {
         }
     }
 
-    /// Replaces the numbers in rows k and n - k by what `exchange` makes of them and of cosine and sine; row 0 stays.
+    /// Replaces the numbers in rows k and n - k by the result of `exchange`, which gets them, the cosine and the sine; row 0 stays.
     #[inline(always)]
     fn pairs(&self, plane: &mut ComplexPicture, exchange: impl Fn([f64; 2], [f64; 2], [f64; 2]) -> [[f64; 2]; 2]) {
         let (n, w) = (self.length, self.width);

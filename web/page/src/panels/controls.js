@@ -85,7 +85,7 @@ export function slider(text, { min, max, step = "any", value, format = (v) => v.
 }
 
 /**
- * A place to drop a file on, or to choose one; or several.
+ * A place to drop or choose one or several files.
  * @param {string} text
  * @param {string} accept
  * @param {(file: File, all: File[]) => void} taken

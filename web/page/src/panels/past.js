@@ -23,7 +23,7 @@ export function where({ line }, seconds, at = line.at) {
 /** @param {import("../app.js").App} app */
 export function past(app) {
   const line = /** @type {HTMLInputElement} */ ($("past"));
-  /** The requested moment, while time moves there. */
+  /** The moment to which time is moving, if it was requested. */
   /** @type {number | null} */
   let goal = null;
   let asked = 0;

@@ -31,7 +31,7 @@ export function setup(app) {
   return el("div", {}, presets(app), scene(app), room(app), senses(app), compare(app), start(app), file(app), all(app));
 }
 
-/** Presets: names, and their settings in addition to those of a first visit. @type {[string, import("../types").Settings][]} */
+/** Presets: names, and the settings that differ from those of a first visit. @type {[string, import("../types").Settings][]} */
 const PRESETS = [
   ["A newborn’s eyes", { behavior: "hand_regard", scene: "cubes", age: 0, vision_active: true, vision_acuity: true }],
   ["Three months, in the crib", { behavior: "self_touch", scene: "crib", age: 3 }],

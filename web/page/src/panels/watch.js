@@ -38,7 +38,7 @@ function eyes(app, event, title) {
   return section;
 }
 
-/** Smallest difference in brightness, of 255, for a picture to count as not plain. */
+/** Smallest difference in brightness, of 255, from which a picture is not plain. */
 const SOMETHING = 30;
 
 /**

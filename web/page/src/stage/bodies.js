@@ -69,7 +69,7 @@ export class Bodies extends Group {
   }
 
   /**
-   * Places everything; `poses` has position and rotation of each drawable, row by row.
+   * Places everything; `poses` has the position and rotation of each drawable, row by row.
    * @param {Float32Array} poses
    */
   place(poses) {

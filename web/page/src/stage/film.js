@@ -5,7 +5,7 @@ const LONGEST = 20_000;
 const TYPES = ["video/mp4;codecs=avc1.42E01E", "video/webm;codecs=vp9", "video/webm;codecs=vp8", "video/webm"];
 
 /**
- * Draws again, at double resolution, and returns the picture, which a canvas does not keep.
+ * Draws again at double resolution and returns the picture. A canvas does not keep what it shows.
  * @param {import("./stage.js").Stage} stage
  * @returns {Promise<Blob>}
  */

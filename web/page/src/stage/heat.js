@@ -10,7 +10,7 @@ export const HEAT = /** @type {const} */ ([
   [1.0, 0.96, 0.72],
 ]);
 
-/** Forces at the ends of the scale, N: a sensor glows from the first on, and no brighter after the last. */
+/** Forces at the ends of the scale, N: a sensor glows from the first force on, and is brightest at the last. */
 export const SCALE = /** @type {const} */ ([0, 0.1, 1, 10]);
 
 /**
@@ -21,7 +21,7 @@ export const place = (newton) => Math.min(1, Math.log(1 + 20 * newton) / Math.lo
 
 const vec = (/** @type {readonly number[]} */ c) => `vec3(${c.map((v) => v.toFixed(3)).join(",")})`;
 
-/** The same scale as a function of a shader. The result is linear light. */
+/** The same scale as a shader function. The result is linear light. */
 export const HEAT_GLSL = /* glsl */ `
 vec3 heat(float x) {
   vec3 c[${HEAT.length}] = vec3[${HEAT.length}](${HEAT.map(vec).join(",")});

@@ -49,7 +49,7 @@ export function texture(faces, plain) {
   return t;
 }
 
-/** Number of tiles of a drawable above which an image is noise and its mean replaces it. */
+/** Number of repetitions on a drawable from which an image would look like noise; its mean replaces it. */
 const TILES = 20;
 
 /**

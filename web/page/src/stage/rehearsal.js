@@ -11,7 +11,7 @@ const THING = { name: "", shape: "sphere", mesh: null, size: [1, 1, 1], rgba: [1
 const PIXEL = { width: 1, height: 1, pixels: new Uint8Array(4) };
 
 /**
- * Makes one object of each material: plain, reflecting its surroundings, and transparent in front of MIMo.
+ * Makes one object of each kind of material: plain, reflective, and transparent in front of MIMo.
  * @param {ConstructorParameters<typeof Bodies>[1]} shared
  */
 export function rehearsal(shared) {

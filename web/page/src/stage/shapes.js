@@ -3,7 +3,7 @@ import { BoxGeometry, BufferAttribute, BufferGeometry, CapsuleGeometry, Cylinder
 
 /** @typedef {import("../types").Drawable} Drawable */
 
-/** Planes reach further than is visible; the renderer needs an end. */
+/** Planes extend beyond what is visible; the renderer needs a finite size. */
 const FAR = 12;
 
 /**
@@ -64,7 +64,7 @@ function triangles(mesh) {
 }
 
 /**
- * Distance of a point to the surface of a drawable, and the way out of it there; both in the drawable's frame.
+ * Distance from a point to the surface of a drawable, and the outward direction there, in the drawable's frame.
  * @param {Drawable} d
  * @param {import("three").Vector3} p
  * @param {import("three").Vector3} out the unit normal

@@ -21,7 +21,7 @@ import { HEAT_GLSL } from "./heat.js";
 
 /** @typedef {import("../types").Scene} Scene */
 
-/** Share of the last value that remains after a second. */
+/** Share of the previous value that remains after a second. */
 const FADE = 0.004;
 
 const VERTEX = /* glsl */ `

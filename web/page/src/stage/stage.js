@@ -25,7 +25,7 @@ export class Stage {
   constructor(canvas, plain) {
     this.canvas = canvas;
     this.plain = plain;
-    /** Pixels drawn for a pixel of the page, at most. */
+    /** Maximum number of pixels drawn per pixel of the page. */
     this.sharpness = plain ? 0.7 : 2;
     this.renderer = new WebGLRenderer({ canvas, antialias: !plain, powerPreference: "high-performance" });
     this.renderer.toneMapping = NeutralToneMapping;
@@ -164,7 +164,7 @@ export class Stage {
   }
 
   /**
-   * The centre of MIMo's mass.
+   * MIMo's centre of mass.
    * @param {Vector3} out
    */
   centre(out) {
@@ -259,7 +259,7 @@ export class Stage {
   }
 }
 
-/** Felt, where the model's image of a rug could be taken for water. @type {[number, number, number, number]} */
+/** A felt-like look, because the model's image of the rug could be mistaken for water. @type {[number, number, number, number]} */
 const FELT = [0.8, 0.76, 0.71, 1];
 
 /**

@@ -143,7 +143,7 @@ export class PageEnv {
   }
 
   /**
-   * Position and quaternion of a body in double precision, as the next step finds it.
+   * Position and quaternion of a body in double precision, as they are at the next step.
    * @param {number} body
    * @returns {number[]}
    */
@@ -244,7 +244,7 @@ export class PageEnv {
     const defaults = new Map(PageEnv.keys().map((k) => [k.name, k.default]));
     return {
       settings: this.settings,
-      // tasks have other defaults than those of the table
+      // the defaults of tasks differ from those of the table
       changed: this.env.info.is_success === null ? Object.fromEntries(Object.entries(this.settings).filter(([name, value]) => String(value) !== String(defaults.get(name)))) : this.settings,
       yaml: this.yaml,
       drawables: this.look.drawables.map(({ texture_scale, texture_offset, ...d }) => ({ ...d, textureScale: texture_scale, textureOffset: texture_offset })),

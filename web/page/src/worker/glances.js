@@ -1,6 +1,6 @@
 // Pictures of the eyes that wait until they are reported: vision may be late.
 
-/** Pictures that are kept at most. */
+/** Maximum number of pictures that are kept. */
 const KEPT = 256;
 
 export class Glances {

@@ -4,7 +4,7 @@
 const APART = 0.5;
 /** Seconds that users can go back in a live run. */
 const KEPT = 30;
-/** Most snapshots of a recording, which is kept whole. */
+/** Maximum number of snapshots of a recording, which is kept whole. */
 const MOST = 128;
 
 /** @typedef {{ bytes: Uint8Array, truncated: boolean }} Key a snapshot, and other data of its moment */
@@ -104,7 +104,7 @@ export class Past {
     while (this.stretches.length > 1 && this.stretches[1].start <= this.last - this.kept) this.stretches.shift();
   }
 
-  /** Clears the known future, because something else happens. A recording's steps remain. */
+  /** Clears the known future, because the run takes another course. A recording's steps remain. */
   forget() {
     if (!this.known || this.recording) return;
     this.changed = this.cut(this.at) !== null;
@@ -127,7 +127,7 @@ export class Past {
   }
 
   /**
-   * The stretch that starts at the current moment because something other than a step has changed the world.
+   * A stretch that starts at the current moment because something other than a step has changed the world.
    * @param {number} at
    */
   cut(at) {

@@ -3,7 +3,7 @@
 /** @typedef {{ low: number, high: number }} Range */
 /** @typedef {(step: number, ranges: Range[], out: Float32Array) => void} Policy */
 
-/** Seconds per step for which the rhythms below are made. */
+/** Step length, s, for which the rhythms below are designed. */
 const STEP = 0.005;
 
 /**
@@ -32,7 +32,7 @@ function into({ low, high }, v) {
 }
 
 /**
- * Moves every joint smoothly from one random effort to the next, each in a rhythm of its own, as infants babble.
+ * Moves every joint smoothly from one random effort to the next, each in its own rhythm, as infants do when babbling.
  * @param {number} seed
  * @param {number} vigour 0 to 1
  * @returns {Policy}

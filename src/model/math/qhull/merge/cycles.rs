@@ -1,4 +1,4 @@
-//! New facets in the plane of their horizon, which are merged into it all together.
+//! New facets in the plane of their horizon, which are merged into it together.
 
 use super::{FEW_VERTICES, MOST_MERGES};
 use crate::math::qhull::Builder;
@@ -7,7 +7,7 @@ use crate::math::qhull::parts::{
 };
 
 impl Builder<'_> {
-    /// Merges new facets without a plane of their own into their horizon (`qh_mergecycle_all`); returns whether there were any.
+    /// Merges new facets without their own plane into their horizon (`qh_mergecycle_all`); returns whether there were any.
     pub(super) fn merge_cycles(&mut self) -> HullResult<bool> {
         let mut any = false;
         let mut facet = self.new_facets;

@@ -161,7 +161,7 @@ impl Builder<'_> {
         Ok(())
     }
 
-    /// Removes a facet from a vertex; a vertex with fewer than two facets left is not a corner.
+    /// Removes a facet from a vertex; a vertex with fewer than two remaining facets is not a corner.
     fn leave_facet(&mut self, vertex: Id, facet: Id, into: Id) {
         drop_swapping(&mut self.vertices[vertex].neighbors, facet);
         if self.vertices[vertex].neighbors.len() < 2 {

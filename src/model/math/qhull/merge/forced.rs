@@ -1,4 +1,4 @@
-//! Merges that must be: of facets at edges that more than two share, and of facets that point inwards.
+//! Forced merges: of facets at edges that more than two share, and of facets that point inwards.
 
 use crate::math::qhull::Builder;
 use crate::math::qhull::matching::WIDE;
@@ -66,7 +66,7 @@ impl Builder<'_> {
         Ok(())
     }
 
-    /// Does these merges (`qh_forcedmerges`); returns whether there were any.
+    /// Performs these merges (`qh_forcedmerges`); returns whether there were any.
     pub(super) fn merge_shared_edges(&mut self) -> HullResult<bool> {
         let noted = std::mem::take(&mut self.merges);
         let (mut shared, mut merged) = (false, false);
@@ -105,7 +105,7 @@ impl Builder<'_> {
         Ok(merged)
     }
 
-    /// Merges the one of two facets that changes less, but rather one that points inwards.
+    /// Merges the one of two facets that changes less, but preferably one that points inwards.
     fn merge_shared(&mut self, facet1: Id, facet2: Id) -> HullResult {
         let ([dist1, low1, high1], [dist2, low2, high2]) = (self.spread(facet1, facet2), self.spread(facet2, facet1));
         self.check_shared(facet1, if dist1 > dist2 { dist2 } else { dist1 })?;

@@ -1,4 +1,4 @@
-//! Facets that are merged, since rounding errors leave them not clearly convex.
+//! Merging of facets that rounding errors leave not clearly convex.
 
 mod cycles;
 mod degenerate;
@@ -21,7 +21,7 @@ const TOO_WIDE: f64 = 100.0;
 const FEW_VERTICES: usize = 8;
 /// The greatest number of merges that is counted (`qh_MAXnummerge`).
 const MOST_MERGES: usize = 511;
-/// The most ends of edges of merged facets that are gone through, in about a quarter of a minute.
+/// Limit on the visited ends of edges of merged facets, which takes about a quarter of a minute.
 const MOST_WORK: usize = 500_000_000;
 
 impl Builder<'_> {
@@ -39,7 +39,7 @@ impl Builder<'_> {
         self.merge_all(merged)
     }
 
-    /// Does all noted merges, tests the facets that they changed, and repeats until nothing is left (`qh_all_merges`).
+    /// Performs all noted merges, tests the facets that they changed, and repeats until nothing is left (`qh_all_merges`).
     pub(super) fn merge_all(&mut self, merged_before: bool) -> HullResult {
         let mut before = merged_before;
         loop {
@@ -66,7 +66,7 @@ impl Builder<'_> {
         }
     }
 
-    /// Does a merge, if both facets are still there, and as they were when it was noted.
+    /// Performs a merge if both facets still exist and have not changed since it was noted.
     fn do_merge(&mut self, merge: Merge) -> HullResult<bool> {
         let Merge {
             facet1, facet2, reason, ..
@@ -100,7 +100,7 @@ impl Builder<'_> {
         }
     }
 
-    /// Finds the neighbour that a facet is nearest to, and how far it is from its plane (`qh_findbestneighbor`).
+    /// Finds the neighbour nearest to a facet, and the facet's distance from its plane (`qh_findbestneighbor`).
     fn best_neighbor(&mut self, facet: Id) -> HullResult<(Id, [f64; 3])> {
         let size = self.facets[facet].vertices.len();
         let by_center = size > MANY_VERTICES;
@@ -184,8 +184,8 @@ impl Builder<'_> {
         Ok(())
     }
 
-    /// Fails for hulls that would take minutes or never end. A hull is done long before it has so many facets and merges. Even a cap of
-    /// ten thousand edges, all of which each of its merges visits, needs less work.
+    /// Fails for hulls that would take minutes or never end. Real hulls finish long before they have so many facets and merges. Even a cap of ten
+    /// thousand edges, all visited by each of its merges, needs less work.
     fn check_pace(&self) -> HullResult {
         let most = 1000 + 200 * self.points.len();
         if self.facets.len() > most || self.merge_count as usize > most || self.work > MOST_WORK {

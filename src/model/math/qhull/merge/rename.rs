@@ -10,8 +10,7 @@ use crate::math::qhull::parts::{
 const PINCHED: f64 = 100.0;
 
 impl Builder<'_> {
-    /// Replaces a vertex that only two facets have, in one of them, by another that both have (`qh_rename_sharedvertex`); returns
-    /// whether there is such a one.
+    /// Replaces a vertex of only two facets, in one of them, by another vertex of both (`qh_rename_sharedvertex`); returns whether there is one.
     pub(super) fn rename_shared(&mut self, vertex: Id, facet: Id) -> HullResult<bool> {
         let &[a, b] = self.vertices[vertex].neighbors.as_slice() else {
             return Ok(false);
@@ -32,7 +31,7 @@ impl Builder<'_> {
         Ok(true)
     }
 
-    /// Returns the edges of a facet that a vertex is on, to marked facets; marks the facet (`qh_vertexridges_facet`).
+    /// Returns the edges of a facet at a vertex that lead to marked facets; marks the facet (`qh_vertexridges_facet`).
     fn vertex_ridges(&mut self, vertex: Id, facet: Id) -> Vec<Id> {
         let ridges = self.facets[facet].ridges.iter().copied().filter(|&ridge| {
             let entry = &self.ridges[ridge];
@@ -43,7 +42,7 @@ impl Builder<'_> {
         ridges
     }
 
-    /// Returns the edges that a vertex is on (`qh_vertexridges`); the last facet has no others, and is left out unless requested.
+    /// Returns the edges at a vertex (`qh_vertexridges`); the last facet adds none, and is left out unless requested.
     fn all_vertex_ridges(&mut self, vertex: Id, last_too: bool) -> Vec<Id> {
         self.visit += 2;
         let neighbors = self.vertices[vertex].neighbors.clone();
@@ -58,7 +57,7 @@ impl Builder<'_> {
             .collect()
     }
 
-    /// Finds a vertex that can replace another without making two edges the same: the one on the fewest edges first
+    /// Finds a vertex that can replace another without making two edges equal, preferring the one on the fewest edges
     /// (`qh_find_newvertex`).
     fn find_new_vertex(&mut self, old: Id, vertices: Vec<Id>, ridges: &[Id]) -> Option<Id> {
         let on = |vertex: Id| {
@@ -153,7 +152,7 @@ impl Builder<'_> {
         Ok(())
     }
 
-    /// Drops neighbours that a facet shares no edge with any more (`qh_maydropneighbor`).
+    /// Drops neighbours with which a facet no longer shares an edge (`qh_maydropneighbor`).
     fn drop_neighbors(&mut self, facet: Id) -> HullResult {
         let ridges = &self.facets[facet].ridges;
         let beyond: Vec<Id> = ridges.iter().map(|&ridge| self.ridges[ridge].other(facet)).collect();
@@ -181,7 +180,7 @@ impl Builder<'_> {
         Ok(())
     }
 
-    /// Replaces a vertex of an edge; one that has both goes (`qh_renameridgevertex`). Returns whether it is left.
+    /// Replaces a vertex of an edge; an edge that has both vertices is removed (`qh_renameridgevertex`). Returns whether it remains.
     fn rename_on_ridge(&mut self, ridge: Id, old: Id, into: Id) -> HullResult<bool> {
         let vertices = &mut self.ridges[ridge].vertices;
         let before = vertices.iter().position(|&vertex| vertex == old).ok_or(HullFailure)?;
@@ -224,7 +223,7 @@ impl Builder<'_> {
         }
     }
 
-    /// Merges vertices that are so noted, after the point was added, until none is left (`qh_all_vertexmerges`).
+    /// Performs the noted merges of vertices, after the point was added, until none is left (`qh_all_vertexmerges`).
     pub(crate) fn merge_vertices(&mut self) -> HullResult {
         while !self.vertex_merges.is_empty() {
             self.check_pace()?;
