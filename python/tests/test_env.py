@@ -323,7 +323,7 @@ def test_the_model_is_changed_for_this_and_for_later_episodes():
     ("changes", "error", "match"),
     [
         ({"body_mas": 1}, KeyError, "nothing of the model that can change is called .*body_mas"),
-        ({"jnt_axis": np.zeros((3, 3))}, KeyError, "nothing of the model that can change is called"),
+        ({"body_ipos": np.zeros((3, 3))}, KeyError, "nothing of the model that can change is called"),
         ({"body_mass": [1.0, 2.0]}, ValueError, r"body_mass has the shape \(2,\)"),
         ({"body_mass": {"haed": 1.0}}, KeyError, "there is no body 'haed'; did you mean `head`"),
         ({"body_mass": {"head": [1.0, 2.0]}}, ValueError, "'head' has numbers of the shape"),

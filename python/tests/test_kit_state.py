@@ -222,7 +222,7 @@ def test_what_the_engine_cannot_take_over_is_refused_at_once(make: Make) -> None
     env = make()
     env.reset()
     model = env.unwrapped.model
-    for name in ("body_ipos", "jnt_axis", "geom_contype", "qpos0"):
+    for name in ("body_ipos", "geom_contype", "geom_condim"):
         with pytest.raises(ValueError, match=r"read-only|cannot be changed here"):
             getattr(model, name)[:] = 0
     model.body_mass[3] = -1
