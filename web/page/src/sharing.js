@@ -92,10 +92,16 @@ export class Sharing {
 
   /** Follows a change of the address: back, forward, or a pasted link. */
   async follow() {
+    clearTimeout(this.later); // the state of before belongs into another entry of the history
     if (!(await this.app.recordings.consent("Another address"))) return;
     this.app.play(false);
     this.linked = null;
-    if (!(await this.arrive()) && !location.hash) await this.enter({ state: FIRST, snapshot: null, second: null, network: null, room: null });
+    this.opening = true; // also while a link is read
+    try {
+      if (!(await this.arrive()) && !location.hash) await this.enter({ state: FIRST, snapshot: null, second: null, network: null, room: null });
+    } finally {
+      this.opening = false;
+    }
   }
 
   /**
