@@ -27,16 +27,23 @@ pub fn quoted(text: &str) -> String {
 /// Returns the known name nearest to `text`, if it is so near that it was probably meant. The comparison ignores the case of ASCII letters.
 pub fn nearest<'n>(text: &str, known: impl Iterator<Item = &'n str>) -> Option<&'n str> {
     const LONGEST: usize = 64; // the distance costs the product of the lengths
+    const COST: usize = 1 << 20; // the sum of these products: a document may have a hundred thousand names
     if text.len() > LONGEST {
         return None;
     }
+    let most = |name: &str| 1 + name.len() / 4; // a longer name may have more typing errors
+    let mut cost = 0;
     // nearly all names are ASCII, and tables of all other letters are 16 kB of a WebAssembly module
     let text = text.to_ascii_lowercase();
     known
-        .filter(|name| name.len() <= LONGEST)
+        .filter(|name| name.len() <= LONGEST && name.len().abs_diff(text.len()) <= most(name))
+        .take_while(|name| {
+            cost += name.len() * text.len();
+            cost <= COST
+        })
         .map(|name| (strsim::damerau_levenshtein(&text, &name.to_ascii_lowercase()), name))
-        // a longer name may have more typing errors; with more allowed, most words would resemble some name
-        .filter(|(distance, name)| *distance <= 1 + name.len() / 4 && *distance < name.len())
+        // with more errors allowed, most words would resemble some name
+        .filter(|(distance, name)| *distance <= most(name) && *distance < name.len())
         .min_by_key(|(distance, _)| *distance)
         .map(|(_, name)| name)
 }
@@ -75,6 +82,16 @@ mod tests {
         // a name of one letter is near to every other one, so that it says nothing
         assert_eq!(find("b"), None);
         assert_eq!(find(&"left_hand".repeat(8)), None);
+        // names beyond the cost are not looked at, so that a large document is refused as fast as a small one
+        let many = std::iter::repeat_n("b".repeat(60), 300)
+            .chain(["a".repeat(60)])
+            .collect::<Vec<_>>();
+        let meant = format!("{}c", "a".repeat(60));
+        assert_eq!(nearest(&meant, many.iter().map(String::as_str)), None);
+        assert_eq!(
+            nearest(&meant, many.iter().rev().map(String::as_str)),
+            Some(&*"a".repeat(60))
+        );
         assert_eq!(suggestion(find("haed")), "; did you mean \"Head\"?");
         assert_eq!(suggestion(None), "");
     }
