@@ -25,7 +25,7 @@ if ! [ -d "$tools/node_modules" ] || [ "$tools/package-lock.json" -nt "$tools/no
   touch "$tools/node_modules"
 fi
 
-book() { # [quick]: without colours in programs, which take half of the time
+book() { # [quick]: without colours in programs, which take a third of the time
   local version commit
   version=$(sed -n 's/^version = "\(.*\)"/\1/p' Cargo.toml | head -1)
   commit=$(git rev-parse --short HEAD 2>/dev/null || true)

@@ -111,7 +111,7 @@ slabs! {
 }
 
 impl Lent<'_> {
-    /// Writes a row, the rows having the length of `values`.
+    /// Writes `values` into row `row`, where all rows have the length of `values`.
     pub fn write_row(mut self, row: usize, values: Values<'_>) -> PyResult<()> {
         self.values_mut()?.write_row(row, values);
         Ok(())

@@ -131,8 +131,8 @@ fn sizes(model: &Model) -> [usize; 4] {
 }
 
 impl Blueprint {
-    /// Returns the second infant in the scene, if a custom document includes `other_mimo.xml`. With muscles there is no second infant, because only
-    /// the learner has muscles.
+    /// Returns the second infant of the scene, which a custom document adds by including `other_mimo.xml`; `None` without it. There is none with
+    /// `actuation_model: muscle` either, because only the learner has muscles.
     ///
     /// A second policy moves it step by step: [`SecondInfant::act`] before each step of the learner.
     pub fn second_infant(&self) -> Option<SecondInfant> {

@@ -265,7 +265,7 @@ impl Draft {
         })
     }
 
-    /// Returns the name of a material's texture. The inner option is `None` if it has none, the outer one if there is no such material.
+    /// Returns the name of a material's texture. The outer option is `None` if there is no such material, the inner one if it has no texture.
     pub fn material_texture(&mut self, name: &str) -> Option<&mut Option<String>> {
         let mut materials = self.document.materials.iter_mut();
         materials

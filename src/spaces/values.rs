@@ -105,7 +105,8 @@ macro_rules! numbers {
                 }
             }
 
-            /// Writes a row, the rows having the length of `values`; if there is no room, or the type differs, nothing is written.
+            /// Writes `values` into row `row`, where all rows have the length of `values`. Writes nothing if there is no such row, or if the type
+            /// differs.
             pub fn write_row(self, row: usize, values: Values<'_>) {
                 match (self, values) {
                     $((Self::$kind(out), Values::$kind(values)) => {

@@ -80,7 +80,7 @@ PROGRAMS = (
             ("D/scripts/d_beta_puppet", "OK:"),
             ("D/scripts/d_c5_growth_check", "11.27"),
             ("D/scripts/d_touch_check", "15897"),
-            ("D/scripts/d_touch_control", "5%"),
+            ("D/scripts/d_touch_control", "=>"),
             ("D/scripts/diag_controllability", "qpos"),
             ("E/scripts/e_limb_strength", "NOTE"),
             ("E/scripts/e_reach_space", "NOTE"),

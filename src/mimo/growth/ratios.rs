@@ -1,7 +1,7 @@
 //! The strength of infants as ratios to the torque of gravity, by groups of joints and age.
 //!
-//! The joint torques of infants have not been measured. The ratios are calibrated so that MIMo does what infants of an age can do; see
-//! `docs/guide/infant.md` for the milestones and for the sweep.
+//! Nobody has measured the joint torques of infants. The ratios are calibrated so that MIMo reaches the milestones of infants of each age:
+//! `docs/guide/infant.md` lists the milestones and shows the sweep.
 
 use crate::config::StrengthFactors;
 use crate::mimo::sources::Mark;

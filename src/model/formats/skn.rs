@@ -64,7 +64,7 @@ struct ByteReader<'a> {
 }
 
 impl ByteReader<'_> {
-    /// Reads rows of numbers; memory is allocated only for as many as the file has.
+    /// Reads `count` rows of numbers. A count that the file cannot hold is an error before memory is allocated for it.
     fn rows<const N: usize>(&mut self, count: usize) -> Result<Vec<[f32; N]>, SkinError> {
         self.each(count, N, floats)
     }

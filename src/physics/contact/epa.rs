@@ -223,7 +223,7 @@ impl<A: Support, B: Support> PolytopeExpansion<'_, A, B> {
         Some(())
     }
 
-    /// Adds supports beyond the nearest face until there is no improvement; returns the nearest face.
+    /// Expands the polytope by support points beyond its nearest face until that brings no improvement. Returns the nearest face.
     fn expand(&mut self, tolerance: f64, iterations: usize) -> Option<u16> {
         let mut upper = UNBOUNDED;
         let mut nearest: Option<u16> = None;

@@ -87,7 +87,7 @@ impl Builder<'_> {
         }
     }
 
-    /// Adds the ridges of a facet that is no longer a simplex (`qh_makeridges`).
+    /// Creates the ridges of a facet that has stopped being a simplex (`qh_makeridges`).
     pub(super) fn make_ridges(&mut self, facet: Id) -> HullResult {
         if !self.facets[facet].simplicial {
             return Ok(());
