@@ -72,7 +72,7 @@ def episodes(folder):
 
 
 def leftovers(folder):
-    """Lists files that no finished run leaves."""
+    """Lists files that a finished run does not leave."""
     walk = os.walk(os.path.join(folder, "run"))
     return [name for _, _, names in walk for name in names if name.endswith(".tmp") or "lock" in name]
 
@@ -116,7 +116,7 @@ def kills(command, which, count):
                 raise Fault(f"{before} episodes of training and evaluation before, {after} after")
             before = after
         finish(folder)
-        return f"{count} kills; {before[0]} episodes of training and {before[1]} of evaluation in the end"
+        return f"{count} kills; {before[0]} episodes of training and {before[1]} of evaluation at the end"
 
 
 def finish(folder):
@@ -135,7 +135,7 @@ def finish(folder):
 
 
 def in_namespace(folder, script):
-    """Runs a script where the mounts that it makes are its own."""
+    """Runs a script in its own mount namespace."""
     command = ["unshare", "--user", "--map-root-user", "--mount", "sh", "-c", script]
     return subprocess.run(command, cwd=folder, capture_output=True, text=True, timeout=600)
 
@@ -201,7 +201,7 @@ def clock_back():
                 raise Fault(f"{when}: {out.stderr.strip()}, {before} and {after} episodes")
             before = after
         finish(folder)
-        return f"{before} episodes in the end"
+        return f"{before} episodes at the end"
 
 
 def main():

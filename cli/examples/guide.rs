@@ -16,12 +16,12 @@ use plotters::prelude::*;
 
 /// Size of a panel, pixels.
 const PANEL: (u32, u32) = (380, 250);
-/// Text, axes and grid: legible on light and on dark ground, which shows through.
+/// Text, axes and grid: legible on light and on dark backgrounds, which show through.
 const GREY: RGBColor = RGBColor(128, 128, 128);
 const BLUE: RGBColor = RGBColor(46, 134, 222);
-/// Of the bands of boys and girls.
+/// Colours of the bands of boys and girls.
 const BANDS: [RGBColor; 2] = [RGBColor(26, 158, 110), RGBColor(232, 126, 36)];
-/// Ages that are drawn in a month.
+/// Number of ages drawn per month.
 const PER_MONTH: u32 = 4;
 
 /// A quantity over age.
@@ -39,7 +39,7 @@ struct Curve {
 /// Values of a z-score at each age: age, months, and value.
 type Line = Vec<(f64, f64)>;
 
-/// The median among infants, and what lies within two standard deviations.
+/// The median among infants, and the range within two standard deviations.
 struct Band {
     of: &'static str,
     median: Line,

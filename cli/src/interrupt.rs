@@ -9,10 +9,10 @@ use signal_hook::consts::SIGHUP;
 use signal_hook::consts::{SIGINT, SIGTERM};
 use signal_hook::flag;
 
-/// Exit code of a program that was interrupted, as shells have it: 128 and the number of SIGINT.
+/// Exit code of an interrupted program, by the convention of shells: 128 plus the number of SIGINT.
 pub const EXIT_CODE: u8 = 130;
 
-/// The signals that ask a program to stop; hangups are those of terminals that close.
+/// The signals that ask a program to stop; hangups come from terminals that close.
 #[cfg(unix)]
 const SIGNALS: [i32; 3] = [SIGINT, SIGTERM, SIGHUP];
 #[cfg(not(unix))]
@@ -23,7 +23,7 @@ const SIGNALS: [i32; 2] = [SIGINT, SIGTERM];
 pub struct Interrupt(Arc<AtomicBool>);
 
 impl Interrupt {
-    /// Handles Ctrl-C, hangups and the signal to terminate as a request to stop, which the command must heed; a second one ends
+    /// Handles Ctrl-C, hangups and the termination signal as a request to stop, which the command must check; a second one ends
     /// the program at once. Signals that are ignored, as hangups are under `nohup`, stay ignored.
     pub fn watch() -> Self {
         let wish = Arc::new(AtomicBool::new(false));

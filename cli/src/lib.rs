@@ -1,4 +1,4 @@
-//! The command line of BabyBench as a function: what the program `babybench` does, and `python -m babybench`.
+//! The command line of BabyBench as a function, which the program `babybench` and `python -m babybench` call.
 #![forbid(unsafe_code)]
 #![deny(missing_docs)]
 

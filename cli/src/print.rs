@@ -1,7 +1,6 @@
 //! Printing to pipes that may be closed: `println!` and `eprintln!` would panic.
 
-/// Writes a line to the standard output. A closed pipe is an error like others, which ends the program quietly (see
-/// `main`).
+/// Writes a line to the standard output. A closed pipe is an ordinary error, which ends the program quietly (see `main`).
 macro_rules! say {
     ($($text:tt)*) => {
         std::io::Write::write_fmt(
@@ -19,7 +18,7 @@ macro_rules! note {
     }};
 }
 
-/// Replaces control characters but line breaks: names out of files must not steer the terminal.
+/// Replaces control characters except line breaks: names from files must not control the terminal.
 pub fn harmless(text: String) -> String {
     let harmful =
         |c: char| c.is_control() && c != '\n' || matches!(c, '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}');

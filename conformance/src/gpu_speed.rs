@@ -96,7 +96,7 @@ fn print_rates(rows: &[Row], environments: &[usize]) {
 }
 
 fn print_differences(rows: &[Row]) -> Result<(), String> {
-    println!("| scene | renderer | from MuJoCo's here | from OSMesa's |");
+    println!("| scene | renderer | from MuJoCo on this device | from MuJoCo with OSMesa |");
     println!("|---|---|--:|--:|");
     for scene in Scene::BABYBENCH.iter().map(ToString::to_string) {
         let osmesa = ours::osmesa(&scene)?;

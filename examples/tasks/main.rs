@@ -58,7 +58,7 @@ impl Arguments {
                 "--threads" => found.threads = value.parse()?,
                 "--age" => found.age = Some(value.parse()?),
                 "--out" => found.out = value.into(),
-                _ => return Err(format!("{word} is none of --seed, --threads, --age, --out").into()),
+                _ => return Err(format!("{word} is not one of --seed, --threads, --age, --out").into()),
             }
         }
         Ok(found)

@@ -381,7 +381,7 @@ class Recorder:
         self.env = env.unwrapped
         if not isinstance(self.env, Env):
             raise TypeError(
-                f"a Recorder records a babybench.Env, not a {type(self.env).__name__}; of a vector record each environment"
+                f"a Recorder records a babybench.Env, not a {type(self.env).__name__}; for a vector, record each environment"
             )
         self._native = _native.Recorder(self.env._core, Path(folder).absolute(), senses, eyes_every, policy)
         self._episode = -1
@@ -400,7 +400,7 @@ class Recorder:
         self.end()
         observation, info = self.env.reset(**options)
         if self._touch != self.env.observation_space.spaces.get("touch"):
-            raise ValueError("a record has one skin, but at this age it has other sensors: set touch_grows: True")
+            raise ValueError("a record has one skin, but at this age its sensors differ: set touch_grows: True")
         self._episode += 1
         self._native.begin(self.env._core, self._episode)
         return observation, info

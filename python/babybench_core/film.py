@@ -95,7 +95,7 @@ class Film:
         """
         kind = FORMATS.get(Path(path).suffix.lower())
         if kind is None:
-            raise ValueError(f"{path}: a film is a file {', '.join(FORMATS)}")
+            raise ValueError(f"{path}: the name of a film ends in {', '.join(FORMATS)}")
         data = self._encoded(kind)
         Path(path).write_bytes(data)
 

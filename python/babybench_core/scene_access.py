@@ -17,7 +17,7 @@ class SceneAccess:
 
     @cached_property
     def actuator_names(self) -> list[str]:
-        """The actuators; with muscles, the action has all of them twice, flexors first."""
+        """The actuators; with muscles, the action contains each of them twice, flexors first."""
         return list(self._core.blueprint.model_names["actuator"])
 
     @property
@@ -32,7 +32,7 @@ class SceneAccess:
 
     @property
     def site_names(self) -> list[str]:
-        """The sites by id, as the document names them: rows of ``site_xpos``; empty where it gives no name."""
+        """The sites by id, as the document names them: rows of ``site_xpos``; empty where it gives none."""
         return list(self._core.blueprint.model_names["site"])
 
     @property
@@ -63,7 +63,7 @@ class SceneAccess:
         return array if element is None else array[changes.rows_of(name, element, self._core.blueprint)]
 
     def change_model(self, model: changes.Changes) -> None:
-        """Changes numbers of the model from the next step on, in this and in later episodes.
+        """Changes numbers of the model from the next step, in this and in later episodes.
 
         Args:
             model: Arrays by MuJoCo's names, as :meth:`array` returns them, or mappings from names of elements to rows.
@@ -113,7 +113,7 @@ class SceneAccess:
 
         def read(name: str) -> npt.NDArray[Any]:
             if name not in present:
-                raise KeyError(f"{name!r} is nothing that pictures follow{hints.nearest(name, sorted(present))}")
+                raise KeyError(f"{name!r} does not affect pictures{hints.nearest(name, sorted(present))}")
             return present[name]
 
         painted = changes.arrays(model, read, self._core.blueprint)

@@ -209,7 +209,7 @@ def test_the_command_exports(record, tmp_path):
     assert "record.h5" in done.stdout
     again = subprocess.run(command, capture_output=True, text=True, timeout=120)
     assert again.returncode == 1
-    assert "is there already" in again.stderr
+    assert "already exists" in again.stderr
     assert "Traceback" not in again.stderr
     command[command.index("parquet,hdf5")] = "csv"
     other = subprocess.run(command, capture_output=True, text=True, timeout=120)

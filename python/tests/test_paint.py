@@ -39,8 +39,8 @@ def test_pictures_follow_and_steps_do_not(env: Any) -> None:
 @pytest.mark.parametrize(
     ("change", "error", "text"),
     [
-        ({"geom_rgb": 1}, KeyError, "'geom_rgb' is nothing that pictures follow; did you mean `geom_rgba`"),
-        ({"body_mass": 1}, KeyError, "'body_mass' is nothing that pictures follow"),
+        ({"geom_rgb": 1}, KeyError, "'geom_rgb' does not affect pictures; did you mean `geom_rgba`"),
+        ({"body_mass": 1}, KeyError, "'body_mass' does not affect pictures"),
         ({"geom_rgba": [1, 0, 0, 1]}, ValueError, r"geom_rgba has the shape \(4,\)"),
         ({"geom_rgba": {"head": [1, 0]}}, ValueError, r"'head' has numbers of the shape \(4,\)"),
         ({"geom_matid": {"head": 999}}, ValueError, "model.geom_matid, element"),

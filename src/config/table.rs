@@ -126,13 +126,13 @@ config! {
     }
     "This implementation's own keys" {
         compat: Compat = Compat::Api, Choice(Compat::NAMES), "What to follow where the API page and the Python code disagree.";
-        mimo_version: u32 = 2, MIMO_VERSIONS, "MIMo's version: 2, or 3, whose chest is a body of its own with two joints.";
+        mimo_version: u32 = 2, MIMO_VERSIONS, "MIMo's version: 2, or 3, whose chest is a separate body with two joints.";
         engine: EngineKind = EngineKind::Soft, Choice(EngineKind::NAMES), "The physics engine.";
         renderer: RendererKind = RendererKind::Cpu, Choice(RendererKind::NAMES), "The renderer of images.";
         learner: Learner = Learner::Mimo, Choice(Learner::NAMES), "Which of two infants in a room learns: the one in `mimo_location` or in `other_location`.";
         other_age: Option<f64> = None, AGE, "The age of the other infant in a room, months; none for the original proportions.";
-        scene_extra: String = String::new(), Document, "MJCF added to a scene of the library: elements of the world and sections.";
-        mocap_motion: String = String::new(), Document, "The paths of bodies with `mocap=\"true\"`, as a table that repeats." + "Its first line has the names `time,BODY.x,BODY.y,BODY.z` and, for bodies that turn, `BODY.qw` to `BODY.qz`. The other lines have numbers.";
+        scene_extra: String = String::new(), Document, "MJCF added to a scene of the library: elements of the world, and sections.";
+        mocap_motion: String = String::new(), Document, "The paths of bodies with `mocap=\"true\"`, as a table that starts again at its end." + "Its first line has the names `time,BODY.x,BODY.y,BODY.z` and, for bodies that turn, `BODY.qw` to `BODY.qz`. The other lines have numbers.";
         seed: u64 = 0, SEED, "The seed of all random choices until a reset sets another.";
         facial_expression: FacialExpression = FacialExpression::Default, Choice(FacialExpression::NAMES), "MIMo's face. It changes pictures only.";
     }
@@ -147,7 +147,7 @@ config! {
             starting_position as starting_position: StartingPosition = StartingPosition::Supine, Choice(StartingPosition::NAMES), "How MIMo lies at the start of the task roll_over.";
         }
         @group mobile: MobileOptions, "Options of the task mobile.", "Options of the task `mobile`." {
-            limb as mobile_limb: Limb = Limb::RightFoot, Choice(Limb::NAMES), "The limb that the ribbon of the task mobile is tied to.";
+            limb as mobile_limb: Limb = Limb::RightFoot, Choice(Limb::NAMES), "The limb to which the ribbon of the task mobile is tied.";
             baseline as mobile_baseline: f64 = 0.2, SHARE, "Task mobile: the share of an episode before the mobile is tied to the limb.";
             extinction as mobile_extinction: f64 = 0.2, SHARE, "Task mobile: the share of an episode after the mobile is untied.";
             reward as mobile_reward: bool = false, Bool, "The task mobile rewards each metre by which the mobile moves.";
@@ -158,13 +158,13 @@ config! {
     }
     GROWTH {
         age: Option<f64> = None, AGE, "The age of MIMo's body, months; none for the original proportions.";
-        age_schedule: AgeSchedule = AgeSchedule::default(), AGES, "Ages of a MIMo who grows; `age` takes them, too." + "They are months by steps of the environment, as in `age: {0: 1, 500000: 6}`. Each episode begins at the age of its first step.";
+        age_schedule: AgeSchedule = AgeSchedule::default(), AGES, "Ages of a growing MIMo; `age` accepts them, too." + "They are months by steps of the environment, as in `age: {0: 1, 500000: 6}`. Each episode begins at the age of its first step.";
         age_grid: f64 = 0.25, GRID, "Ages between two points of `age_schedule` are multiples of this, months.";
-        strength_age: Option<f64> = None, AGE, "The age of MIMo's strength, months; none for that of his body.";
+        strength_age: Option<f64> = None, AGE, "The age of MIMo's strength, months; none to follow his body.";
         strength: StrengthModel = StrengthModel::Volume, Choice(StrengthModel::NAMES), "What the strength of motors and muscles follows." + "`volume` follows the part that carries them, `infant` ratios to the torque of gravity at each age, calibrated on what infants can do.";
         springs: SpringModel = SpringModel::Fixed, Choice(SpringModel::NAMES), "What springs and dampers of joints follow." + "`fixed` keeps those of the original proportions, `weight` follows the torque of gravity on each joint.";
         proportions: Proportions = Proportions::Mimo, Choice(Proportions::NAMES), "The source of MIMo's proportions." + "`mimo` are the authors' formulas, `measured` keeps their length and divides it between trunk and legs as in infants.";
-        touch_grows: bool = false, Bool, "Touch sensors keep their number and move with the body, instead of keeping their distances.";
+        touch_grows: bool = false, Bool, "Touch sensors keep their number and move with the body, instead of keeping their spacing.";
         @group strength_factors: StrengthFactors, "Factors on the strength of groups of joints (`strength_neck` ...).", "Factors on the strength of groups of joints by [`StrengthModel::Infant`]." {
             neck as strength_neck: f64 = 1.0, FACTOR, "Factor on the strength of the neck by `strength: infant`.";
             trunk as strength_trunk: f64 = 1.0, FACTOR, "Factor on the strength of the trunk by `strength: infant`.";
@@ -177,45 +177,45 @@ config! {
             ankle as strength_ankle: f64 = 1.0, FACTOR, "Factor on the strength of the ankles and toes by `strength: infant`.";
         }
         @group measurements: Measurements, "Measurements that replace those of the age.", "Measurements of an infant's body, as AnthroKids (1977) took them: cm, the two diameters of fingers mm. `None` leaves a measurement to the age." {
-            ankle_circumference as ankle_circumference: Option<f64> = None, CENTIMETRES, "The circumference of the ankle, cm; none for the value of the age.";
-            calf_circumference as calf_circumference: Option<f64> = None, CENTIMETRES, "The circumference of the calf, cm; none for the value of the age.";
-            elbow_hand_length as elbow_hand_length: Option<f64> = None, CENTIMETRES, "The length from the elbow to the fingertips, cm; none for the value of the age.";
-            fist_breadth as fist_breadth: Option<f64> = None, CENTIMETRES, "The breadth of the fist, cm; none for the value of the age.";
-            foot_breadth as foot_breadth: Option<f64> = None, CENTIMETRES, "The breadth of the foot, cm; none for the value of the age.";
-            foot_length as foot_length: Option<f64> = None, CENTIMETRES, "The length of the foot, cm; none for the value of the age.";
-            forearm_circumference as forearm_circumference: Option<f64> = None, CENTIMETRES, "The circumference of the forearm, cm; none for the value of the age.";
-            hand_breadth as hand_breadth: Option<f64> = None, CENTIMETRES, "The breadth of the hand, cm; none for the value of the age.";
-            hand_length as hand_length: Option<f64> = None, CENTIMETRES, "The length of the hand, cm; none for the value of the age.";
-            head_circumference as head_circumference: Option<f64> = None, CENTIMETRES, "The circumference of the head, cm; none for the value of the age.";
-            hip_breadth as hip_breadth: Option<f64> = None, CENTIMETRES, "The breadth of the hip, cm; none for the value of the age.";
-            knee_sole_length as knee_sole_length: Option<f64> = None, CENTIMETRES, "The length from the knee to the sole, cm; none for the value of the age.";
-            middle_finger_diameter as middle_finger_diameter: Option<f64> = None, MILLIMETRES, "The diameter of the middle finger, mm; none for the value of the age.";
-            rump_knee_length as rump_knee_length: Option<f64> = None, CENTIMETRES, "The length from the rump to the knee, cm; none for the value of the age.";
-            shoulder_elbow_length as shoulder_elbow_length: Option<f64> = None, CENTIMETRES, "The length from the shoulder to the elbow, cm; none for the value of the age.";
-            thigh_circumference as thigh_circumference: Option<f64> = None, CENTIMETRES, "The circumference of the thigh at its middle, cm; none for the value of the age.";
-            thumb_diameter as thumb_diameter: Option<f64> = None, MILLIMETRES, "The diameter of the thumb, mm; none for the value of the age.";
-            upper_arm_circumference as upper_arm_circumference: Option<f64> = None, CENTIMETRES, "The circumference of the upper arm, cm; none for the value of the age.";
+            ankle_circumference as ankle_circumference: Option<f64> = None, CENTIMETRES, "The circumference of the ankle, cm; none to follow the age.";
+            calf_circumference as calf_circumference: Option<f64> = None, CENTIMETRES, "The circumference of the calf, cm; none to follow the age.";
+            elbow_hand_length as elbow_hand_length: Option<f64> = None, CENTIMETRES, "The length from the elbow to the fingertips, cm; none to follow the age.";
+            fist_breadth as fist_breadth: Option<f64> = None, CENTIMETRES, "The breadth of the fist, cm; none to follow the age.";
+            foot_breadth as foot_breadth: Option<f64> = None, CENTIMETRES, "The breadth of the foot, cm; none to follow the age.";
+            foot_length as foot_length: Option<f64> = None, CENTIMETRES, "The length of the foot, cm; none to follow the age.";
+            forearm_circumference as forearm_circumference: Option<f64> = None, CENTIMETRES, "The circumference of the forearm, cm; none to follow the age.";
+            hand_breadth as hand_breadth: Option<f64> = None, CENTIMETRES, "The breadth of the hand, cm; none to follow the age.";
+            hand_length as hand_length: Option<f64> = None, CENTIMETRES, "The length of the hand, cm; none to follow the age.";
+            head_circumference as head_circumference: Option<f64> = None, CENTIMETRES, "The circumference of the head, cm; none to follow the age.";
+            hip_breadth as hip_breadth: Option<f64> = None, CENTIMETRES, "The breadth of the hip, cm; none to follow the age.";
+            knee_sole_length as knee_sole_length: Option<f64> = None, CENTIMETRES, "The length from the knee to the sole, cm; none to follow the age.";
+            middle_finger_diameter as middle_finger_diameter: Option<f64> = None, MILLIMETRES, "The diameter of the middle finger, mm; none to follow the age.";
+            rump_knee_length as rump_knee_length: Option<f64> = None, CENTIMETRES, "The length from the rump to the knee, cm; none to follow the age.";
+            shoulder_elbow_length as shoulder_elbow_length: Option<f64> = None, CENTIMETRES, "The length from the shoulder to the elbow, cm; none to follow the age.";
+            thigh_circumference as thigh_circumference: Option<f64> = None, CENTIMETRES, "The circumference of the thigh at its middle, cm; none to follow the age.";
+            thumb_diameter as thumb_diameter: Option<f64> = None, MILLIMETRES, "The diameter of the thumb, mm; none to follow the age.";
+            upper_arm_circumference as upper_arm_circumference: Option<f64> = None, CENTIMETRES, "The circumference of the upper arm, cm; none to follow the age.";
         }
     }
     "Delays" {
         @group delays: Delays, "Delays of senses and actions (`delay_sensory` ...).", "Delays of senses and actions, in [`Delays::unit`]; 0 is none." {
             unit as delay_unit: DelayUnit = DelayUnit::default(), Choice(DelayUnit::NAMES), "The unit of delays; milliseconds are rounded to whole steps.";
             by_age as delay_by_age: bool = false, Bool, "Senses without a delay of their own have the delay measured in infants of MIMo's age.";
-            sensory as delay_sensory: f64 = 0.0, DELAY, "The delay of senses without one of their own or of their age.";
+            sensory as delay_sensory: f64 = 0.0, DELAY, "The delay of senses that have none of their own or from MIMo's age.";
             motor as delay_motor: f64 = 0.0, DELAY, "The delay of actions.";
-            proprioception as delay_proprioception: Option<f64> = None, OWN_DELAY, "The delay of proprioception; none for `delay_by_age` or `delay_sensory`.";
-            touch as delay_touch: Option<f64> = None, OWN_DELAY, "The delay of touch and pain; none for `delay_by_age` or `delay_sensory`.";
-            vestibular as delay_vestibular: Option<f64> = None, OWN_DELAY, "The delay of the head's motion; none for `delay_by_age` or `delay_sensory`.";
-            vision as delay_vision: Option<f64> = None, OWN_DELAY, "The delay of both eyes; none for `delay_by_age` or `delay_sensory`.";
+            proprioception as delay_proprioception: Option<f64> = None, OWN_DELAY, "The delay of proprioception; none to follow `delay_by_age` or `delay_sensory`.";
+            touch as delay_touch: Option<f64> = None, OWN_DELAY, "The delay of touch and pain; none to follow `delay_by_age` or `delay_sensory`.";
+            vestibular as delay_vestibular: Option<f64> = None, OWN_DELAY, "The delay of the head's motion; none to follow `delay_by_age` or `delay_sensory`.";
+            vision as delay_vision: Option<f64> = None, OWN_DELAY, "The delay of both eyes; none to follow `delay_by_age` or `delay_sensory`.";
         }
     }
     "Noise" {
         @group noise: NoiseLevels, "Noise of senses and actions (`noise_touch` ...).", "Standard deviations of the noise of senses and actions; 0 is none." {
-            proprioception as noise_proprioception: f64 = 0.0, DEVIATION, "Standard deviation of the noise of proprioception, in the unit of each number.";
-            touch as noise_touch: f64 = 0.0, DEVIATION, "Standard deviation of the noise of active touch sensors, N.";
-            vestibular as noise_vestibular: f64 = 0.0, DEVIATION, "Standard deviation of the noise of the head's motion, m/s^2 and rad/s.";
-            vision as noise_vision: f64 = 0.0, DEVIATION, "Standard deviation of the noise of images, on a scale of 255.";
-            motor as noise_motor: f64 = 0.0, SHARE, "Standard deviation of the noise of actions, as a share of each number, so that it grows with effort.";
+            proprioception as noise_proprioception: f64 = 0.0, DEVIATION, "Standard deviation of the noise on proprioception, in the unit of each number.";
+            touch as noise_touch: f64 = 0.0, DEVIATION, "Standard deviation of the noise on active touch sensors, N.";
+            vestibular as noise_vestibular: f64 = 0.0, DEVIATION, "Standard deviation of the noise on the head's motion, m/s^2 and rad/s.";
+            vision as noise_vision: f64 = 0.0, DEVIATION, "Standard deviation of the noise on images, on a scale of 255.";
+            motor as noise_motor: f64 = 0.0, SHARE, "Standard deviation of the noise on actions, as a share of each number, so that it grows with effort.";
             motor_color as noise_motor_color: Option<f64> = None, COLOR, "The exponent of the colour of `noise_motor`; none for white noise.";
         }
     }
@@ -230,34 +230,34 @@ config! {
     }
     "Vision" {
         vision_active: bool = true, Bool, "The images of both eyes are observed.";
-        vision_resolution: u32 = 64, PIXELS, "Width and height of an eye's image, pixels, without keys of its own.";
+        vision_resolution: u32 = 64, PIXELS, "Width and height of an eye's image, pixels, unless the eye has its own keys.";
         vision_outputs: VisionOutputs = VisionOutputs::default(), List(VisionOutput::NAMES), "The kinds of images of each eye that are observed.";
         vision_threads: u32 = 1, EYES, "Threads that draw both eyes of a single environment; 2 takes less wall time and gives the same bytes." + "Vectors have their own threads and draw each environment with one.";
-        vision_rate: Option<f64> = None, RATE, "Pictures that each eye sees per second, Hz; none for one in each step." + "Between two pictures the last one is observed. Environments with different seeds see pictures in different steps.";
+        vision_rate: Option<f64> = None, RATE, "Pictures that each eye sees per second, Hz; none for one per step." + "Between two pictures the last one is observed. Environments with different seeds see pictures in different steps.";
         vision_lazy: bool = false, Bool, "Images are drawn only on request." + "Rust requests them with `SensesMut::look`, Python with `env.eyes()`. All are drawn if a later image depends on each, through noise, a delay or a rate.";
         @group eyes: EyeOptions, "What the eyes see, how sharp, and where (`vision_width` ...).", "What the eyes see, how sharp, and where." {
             width as vision_width: Option<u32> = None, OWN_PIXELS, "The width of an eye's image, pixels; none for `vision_resolution`.";
-            width_left as vision_width_left: Option<u32> = None, OWN_PIXELS, "The width of the left eye's image, pixels; none for `vision_width`.";
-            width_right as vision_width_right: Option<u32> = None, OWN_PIXELS, "The width of the right eye's image, pixels; none for `vision_width`.";
+            width_left as vision_width_left: Option<u32> = None, OWN_PIXELS, "The width of the left eye's image, pixels; none to follow `vision_width`.";
+            width_right as vision_width_right: Option<u32> = None, OWN_PIXELS, "The width of the right eye's image, pixels; none to follow `vision_width`.";
             height as vision_height: Option<u32> = None, OWN_PIXELS, "The height of an eye's image, pixels; none for `vision_resolution`.";
-            height_left as vision_height_left: Option<u32> = None, OWN_PIXELS, "The height of the left eye's image, pixels; none for `vision_height`.";
-            height_right as vision_height_right: Option<u32> = None, OWN_PIXELS, "The height of the right eye's image, pixels; none for `vision_height`.";
+            height_left as vision_height_left: Option<u32> = None, OWN_PIXELS, "The height of the left eye's image, pixels; none to follow `vision_height`.";
+            height_right as vision_height_right: Option<u32> = None, OWN_PIXELS, "The height of the right eye's image, pixels; none to follow `vision_height`.";
             fovy as vision_fovy: Option<f64> = None, FIELD, "The vertical field of view of an eye, degrees; none for the camera's, 60 by default.";
-            fovy_left as vision_fovy_left: Option<f64> = None, FIELD, "The vertical field of view of the left eye, degrees; none for `vision_fovy`.";
-            fovy_right as vision_fovy_right: Option<f64> = None, FIELD, "The vertical field of view of the right eye, degrees; none for `vision_fovy`.";
-            acuity as vision_acuity: bool = false, Bool, "Images are blurred as eyes of MIMo's age see them (18 months without an age).";
+            fovy_left as vision_fovy_left: Option<f64> = None, FIELD, "The vertical field of view of the left eye, degrees; none to follow `vision_fovy`.";
+            fovy_right as vision_fovy_right: Option<f64> = None, FIELD, "The vertical field of view of the right eye, degrees; none to follow `vision_fovy`.";
+            acuity as vision_acuity: bool = false, Bool, "Images are blurred to what eyes of MIMo's age see (18 months without an age).";
             acuity_left as vision_acuity_left: Option<f64> = None, ACUITY_AGE, "The age of the left eye's acuity, months; none to follow `vision_acuity`.";
             acuity_right as vision_acuity_right: Option<f64> = None, ACUITY_AGE, "The age of the right eye's acuity, months; none to follow `vision_acuity`.";
             foveation as vision_foveation: f64 = 0.0, STRENGTH, "How strongly the centre of images is enlarged; 10 is usual, 0 is off.";
-            foveation_left as vision_foveation_left: Option<f64> = None, OWN_STRENGTH, "The foveation of the left eye; none for `vision_foveation`.";
-            foveation_right as vision_foveation_right: Option<f64> = None, OWN_STRENGTH, "The foveation of the right eye; none for `vision_foveation`.";
+            foveation_left as vision_foveation_left: Option<f64> = None, OWN_STRENGTH, "The foveation of the left eye; none to follow `vision_foveation`.";
+            foveation_right as vision_foveation_right: Option<f64> = None, OWN_STRENGTH, "The foveation of the right eye; none to follow `vision_foveation`.";
         }
     }
     "Touch" {
         touch_active: bool = true, Bool, "Touch is observed." + "See [`Config::touch_enabled`].";
         touch_scale: f64 = 1.0, SCALE, "Factor on the distance between sensors; 0 turns touch off.";
         touch_function: TouchFunction = TouchFunction::Normal, Choice(TouchFunction::NAMES), "What a sensor reports." + "`normal` exists under `compat: api` only, `normal_force` under `compat: reference` only.";
-        touch_rate: Option<f64> = None, RATE, "Samples of the skin per second, Hz; none for one in each step." + "In between, touch, pain and pooled touch keep their last values.";
+        touch_rate: Option<f64> = None, RATE, "Samples of the skin per second, Hz; none for one per step." + "In between, touch, pain and pooled touch keep their last values.";
         touch_response: TouchResponse = TouchResponse::Nearest, Choice(TouchResponse::NAMES), "How sensors share a force.";
         @parts touch = BodyParts { eyes: false, ..BodyParts::all(true) }, "Parts that have touch sensors (`touch_hands` ...)." {
             hands as touch_hands, "The hands have touch sensors.";
@@ -278,7 +278,7 @@ config! {
         @group pain: PainOptions, "What hurts (`pain_threshold` ...).", "The sense of pain." {
             threshold as pain_threshold: f64 = 20.0, PAIN, "The force on a sensor above which it hurts, N.";
             slope as pain_slope: f64 = 0.1, PAIN, "The pain per newton above the threshold.";
-            limit as pain_limit: Option<f64> = None, MOST_PAIN, "The greatest pain of a sensor; none for no limit.";
+            limit as pain_limit: Option<f64> = None, MOST_PAIN, "The greatest pain of a sensor; none means no limit.";
             decay_old as pain_decay_old: f64 = 0.0, SHARE, "The share of the last step's pain that remains.";
             decay_new as pain_decay_new: f64 = 1.0, SHARE, "The factor on new pain.";
         }
@@ -307,24 +307,24 @@ config! {
             observed as reflex_observed: bool = false, Bool, "How strongly each reflex acts is observed.";
         }
         @group reflex_gains: ReflexGains, "Gains of single reflexes (`reflex_gain_vor` ...).", "Gains of single reflexes, in place of those of MIMo's age." {
-            palmar_grasp as reflex_gain_palmar_grasp: Option<f64> = None, OWN_FACTOR, "The gain of the palmar grasp, 1 is full; none for that of MIMo's age.";
-            plantar_grasp as reflex_gain_plantar_grasp: Option<f64> = None, OWN_FACTOR, "The gain of the plantar grasp, 1 is full; none for that of MIMo's age.";
-            rooting as reflex_gain_rooting: Option<f64> = None, OWN_FACTOR, "The gain of rooting, 1 is full; none for that of MIMo's age.";
-            moro as reflex_gain_moro: Option<f64> = None, OWN_FACTOR, "The gain of the Moro reflex, 1 is full; none for that of MIMo's age.";
-            atnr as reflex_gain_atnr: Option<f64> = None, OWN_FACTOR, "The gain of the asymmetric tonic neck reflex, 1 is full; none for that of MIMo's age.";
-            stepping as reflex_gain_stepping: Option<f64> = None, OWN_FACTOR, "The gain of stepping, 1 is full; none for that of MIMo's age.";
-            vor as reflex_gain_vor: Option<f64> = None, OWN_FACTOR, "The gain of the vestibulo-ocular reflex, eyes over head; none for that of MIMo's age.";
-            stretch as reflex_gain_stretch: Option<f64> = None, OWN_FACTOR, "The gain of the stretch reflex, 1 is full; none for that of MIMo's age.";
+            palmar_grasp as reflex_gain_palmar_grasp: Option<f64> = None, OWN_FACTOR, "The gain of the palmar grasp, 1 is full; none to follow MIMo's age.";
+            plantar_grasp as reflex_gain_plantar_grasp: Option<f64> = None, OWN_FACTOR, "The gain of the plantar grasp, 1 is full; none to follow MIMo's age.";
+            rooting as reflex_gain_rooting: Option<f64> = None, OWN_FACTOR, "The gain of rooting, 1 is full; none to follow MIMo's age.";
+            moro as reflex_gain_moro: Option<f64> = None, OWN_FACTOR, "The gain of the Moro reflex, 1 is full; none to follow MIMo's age.";
+            atnr as reflex_gain_atnr: Option<f64> = None, OWN_FACTOR, "The gain of the asymmetric tonic neck reflex, 1 is full; none to follow MIMo's age.";
+            stepping as reflex_gain_stepping: Option<f64> = None, OWN_FACTOR, "The gain of stepping, 1 is full; none to follow MIMo's age.";
+            vor as reflex_gain_vor: Option<f64> = None, OWN_FACTOR, "The gain of the vestibulo-ocular reflex, eyes over head; none to follow MIMo's age.";
+            stretch as reflex_gain_stretch: Option<f64> = None, OWN_FACTOR, "The gain of the stretch reflex, 1 is full; none to follow MIMo's age.";
         }
         @group reflex_delays: ReflexDelays, "Delays of single reflexes (`reflex_delay_vor` ...).", "Delays of single reflexes, ms, in place of their own." {
-            palmar_grasp as reflex_delay_palmar_grasp: Option<f64> = None, REFLEX_DELAY, "The delay of the palmar grasp, ms; none for its own.";
-            plantar_grasp as reflex_delay_plantar_grasp: Option<f64> = None, REFLEX_DELAY, "The delay of the plantar grasp, ms; none for its own.";
-            rooting as reflex_delay_rooting: Option<f64> = None, REFLEX_DELAY, "The delay of rooting, ms; none for its own.";
-            moro as reflex_delay_moro: Option<f64> = None, REFLEX_DELAY, "The delay of the Moro reflex, ms; none for its own.";
-            atnr as reflex_delay_atnr: Option<f64> = None, REFLEX_DELAY, "The delay of the asymmetric tonic neck reflex, ms; none for its own.";
-            stepping as reflex_delay_stepping: Option<f64> = None, REFLEX_DELAY, "The delay of stepping, ms; none for its own.";
-            vor as reflex_delay_vor: Option<f64> = None, REFLEX_DELAY, "The delay of the vestibulo-ocular reflex, ms; none for its own.";
-            stretch as reflex_delay_stretch: Option<f64> = None, REFLEX_DELAY, "The delay of the stretch reflex, ms; none for its own.";
+            palmar_grasp as reflex_delay_palmar_grasp: Option<f64> = None, REFLEX_DELAY, "The delay of the palmar grasp, ms; none for the default.";
+            plantar_grasp as reflex_delay_plantar_grasp: Option<f64> = None, REFLEX_DELAY, "The delay of the plantar grasp, ms; none for the default.";
+            rooting as reflex_delay_rooting: Option<f64> = None, REFLEX_DELAY, "The delay of rooting, ms; none for the default.";
+            moro as reflex_delay_moro: Option<f64> = None, REFLEX_DELAY, "The delay of the Moro reflex, ms; none for the default.";
+            atnr as reflex_delay_atnr: Option<f64> = None, REFLEX_DELAY, "The delay of the asymmetric tonic neck reflex, ms; none for the default.";
+            stepping as reflex_delay_stepping: Option<f64> = None, REFLEX_DELAY, "The delay of stepping, ms; none for the default.";
+            vor as reflex_delay_vor: Option<f64> = None, REFLEX_DELAY, "The delay of the vestibulo-ocular reflex, ms; none for the default.";
+            stretch as reflex_delay_stretch: Option<f64> = None, REFLEX_DELAY, "The delay of the stretch reflex, ms; none for the default.";
         }
     }
     "Locked joints" {

@@ -30,7 +30,7 @@ const MOVI: u64 = 220;
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum AviError {
-    /// A size or frame rate that the format cannot hold.
+    /// The format does not support the size or frame rate.
     #[error("a video cannot have {width} x {height} pixels at {fps} frames per second")]
     Format {
         /// Width in pixels.
@@ -40,8 +40,8 @@ pub enum AviError {
         /// Frames per second.
         fps: u32,
     },
-    /// A frame of wrong size.
-    #[error("the frame has {found} bytes but the video's have {expected}")]
+    /// A frame has the wrong size.
+    #[error("the frame has {found} bytes, but those of the video have {expected}")]
     Frame {
         /// Bytes found.
         found: usize,
@@ -172,7 +172,7 @@ impl<W: Write + Seek> AviWriter<W> {
         Ok(())
     }
 
-    /// Returns the output. Nothing is left to write: dropping the writer does as well.
+    /// Returns the output. There is nothing left to write, so dropping the writer is enough.
     pub fn into_inner(self) -> W {
         self.out
     }

@@ -10,7 +10,7 @@ pub(crate) struct ReflexRow {
     pub delay: f64,
     delay_mark: Mark,
     delay_source: &'static str,
-    /// Ages until which it is full and from which it is gone, months; `None` if it stays.
+    /// Age until which it is full, and age from which it is gone, months; `None` if it stays.
     ages: Option<[f64; 2]>,
     ages_source: &'static str,
 }
@@ -18,7 +18,7 @@ pub(crate) struct ReflexRow {
 /// The gain of the vestibulo-ocular reflex, eye over head.
 const VOR_GAIN: f64 = 1.03;
 
-const TABLES: &str = "tables of infants' reflexes; a straight line between the ages is ours";
+const TABLES: &str = "tables of infants' reflexes; the straight line between the ages is our choice";
 const OURS: &str = "ours";
 
 /// Every reflex, in the order of [`Reflex::ALL`].
@@ -100,7 +100,7 @@ pub(crate) fn of(reflex: Reflex) -> &'static ReflexRow {
     &ROWS[reflex as usize]
 }
 
-/// Returns the gain of a reflex at an age, months. Without an age, reflexes that infants lose are full.
+/// Returns the gain of a reflex at an age, months. Without an age, reflexes that infants lose have their full gain.
 pub(crate) fn gain(reflex: Reflex, age: Option<f64>) -> f64 {
     let full = if reflex == Reflex::Vor { VOR_GAIN } else { 1.0 };
     match (of(reflex).ages, age) {
@@ -144,7 +144,7 @@ pub(crate) const ATNR_TIMES: [f64; 2] = [0.3, 0.3];
 pub(crate) const PALMAR: [f64; 2] = [0.05, 0.5];
 /// Pressure behind the toes at which their grasp begins, and the further pressure at which it is full, N.
 pub(crate) const PLANTAR: [f64; 2] = [0.1, 1.0];
-/// Place from which on the sole elicits it, over the distance of the toes from the ankle.
+/// Point on the sole beyond which pressure elicits it, as a fraction of the distance from the ankle to the toes.
 pub(crate) const BALL: f64 = 0.5;
 /// Share of the range of fingers and toes to which they bend.
 pub(crate) const BEND: f64 = 0.8;
@@ -153,7 +153,7 @@ pub(crate) const GRASP_TIMES: [f64; 2] = [0.1, 0.5];
 
 /// Force beside the mouth at which rooting begins, and the further force at which it is full, N.
 pub(crate) const ROOTING: [f64; 2] = [0.02, 0.2];
-/// Distance from the mouth of touches that elicit it, over the radius of the head.
+/// Largest distance from the mouth at which touches elicit it, in radii of the head.
 pub(crate) const BESIDE_MOUTH: f64 = 0.6;
 /// Share of the force of MIMo's own hands.
 pub(crate) const OWN_TOUCH: f64 = 0.33;
@@ -189,7 +189,7 @@ pub(crate) const MORO_CLOSE: f64 = 1.4;
 pub(crate) const MORO_PAUSE: f64 = 2.0;
 /// Share of a motor's strength.
 pub(crate) const MORO_EFFORT: f64 = 0.6;
-/// Share of drops in which the left arm is the later one, and by how much, s.
+/// Share of drops in which the left arm is later, and its lag, s.
 pub(crate) const MORO_LATE: [f64; 2] = [0.82, 0.012];
 
 /// Lists the constants of reflexes.
@@ -230,7 +230,7 @@ pub(super) fn constants() -> Vec<SourcedConstant> {
                 "stretch, share of the strength",
                 &STRETCH_SHARES,
                 "1",
-                "H-reflex 70 % of M at term, 30 % at 12 months (Hakamada 1988); the size is ours",
+                "H-reflex 70 % of M at term, 30 % at 12 months (Hakamada 1988); the size is our choice",
                 seen,
             )
         },
@@ -279,7 +279,7 @@ pub(super) fn constants() -> Vec<SourcedConstant> {
             "rooting, share of the force of own hands",
             &[OWN_TOUCH],
             "1",
-            "self-touch elicits it less (Rochat and Hespos 1997); the share is ours",
+            "self-touch elicits it less (Rochat and Hespos 1997); the share is our choice",
             seen,
         ),
         named("rooting, turn of the head", &[ROOTING_TURN], "rad", OURS, unsourced),

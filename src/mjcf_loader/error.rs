@@ -32,8 +32,8 @@ impl fmt::Display for Location {
     }
 }
 
-/// An element that a rule allows but no reader takes. Rules and readers are in different files: without this error, an element with a rule
-/// but no reader would load and have no effect.
+/// An element that has a rule but no reader. Rules and readers are in different files: without this error, such an element would load and have no
+/// effect.
 pub(super) const UNREAD: &str =
     "the library allows this element but does not read it: please report this as a bug, and remove it until then";
 
@@ -50,8 +50,7 @@ pub struct LoadError {
 }
 
 impl LoadError {
-    /// Names the file as seen from where `folder` is, in which the source of the assets looks for files, for people who gave the path
-    /// of a file.
+    /// Names the file relative to the location of `folder`, in which the asset source looks for files, for users who gave the path of a file.
     #[must_use]
     pub fn in_folder(mut self, folder: &Path) -> Self {
         self.place.file = folder.join(&self.place.file).display().to_string();
@@ -92,7 +91,7 @@ pub enum ErrorKind {
     /// The text breaks the rules of XML.
     #[error("malformed XML: {}", quoted(.0))]
     Xml(String),
-    /// XML that is legal but has no place in MJCF: entities, text outside the root, processing instructions in it.
+    /// Legal XML that is not allowed in MJCF: entities, text outside the root, processing instructions in it.
     #[error("{0} is not allowed; remove it")]
     Forbidden(&'static str),
     /// A limit on untrusted input.
@@ -109,7 +108,7 @@ pub enum ErrorKind {
     /// A file is included twice, or includes itself.
     #[error("file \"{}\" is already included", quoted(.0))]
     RepeatedInclude(String),
-    /// A model that names itself among the models that it is made of.
+    /// A model that includes itself.
     #[error("the model of file \"{}\" cannot be a part of itself", quoted(.0))]
     ModelInItself(String),
     /// An element that is unknown, unsupported or in the wrong place.
@@ -117,11 +116,11 @@ pub enum ErrorKind {
     UnknownElement {
         /// The name found.
         name: String,
-        /// The name of an element that may stand there and was probably meant.
+        /// The name of the allowed element that was probably meant.
         nearest: Option<&'static str>,
     },
-    /// An element that MuJoCo has since a version after 3.3.0.
-    #[error("element \"{}\" is of a later MuJoCo than 3.3.0, whose language this is: remove it", quoted(.0))]
+    /// An element that MuJoCo added after 3.3.0.
+    #[error("element \"{}\" was added after MuJoCo 3.3.0, the version supported here: remove it", quoted(.0))]
     LaterElement(String),
     /// A plugin of MuJoCo.
     #[error("plugin \"{}\" is a program of MuJoCo's own, which is not run here: {what}", quoted(.name))]
@@ -139,7 +138,7 @@ pub enum ErrorKind {
         /// Explanation and advice.
         what: &'static str,
     },
-    /// An element that may stand here once only.
+    /// An element that may be here only once.
     #[error("element \"{}\" is given twice", quoted(.0))]
     RepeatedElement(&'static str),
     /// An attribute that is unknown or unsupported.
@@ -150,8 +149,8 @@ pub enum ErrorKind {
         /// The attribute of the element that was probably meant.
         nearest: Option<&'static str>,
     },
-    /// An attribute that MuJoCo has since a version after 3.3.0, with a value that changes something.
-    #[error("attribute \"{}\" is of a later MuJoCo than 3.3.0, whose language this is: remove it", quoted(.0))]
+    /// An attribute that MuJoCo added after 3.3.0, with a value that has an effect.
+    #[error("attribute \"{}\" was added after MuJoCo 3.3.0, the version supported here: remove it", quoted(.0))]
     LaterAttribute(String),
     /// An attribute given twice.
     #[error("attribute \"{}\" is given twice", quoted(.0))]
@@ -291,7 +290,7 @@ pub enum ErrorKind {
         /// The name of an element of that kind that was probably meant.
         nearest: Option<String>,
     },
-    /// Valid syntax that makes no valid model.
+    /// Valid syntax for an invalid model.
     #[error("{0}")]
     Invalid(&'static str),
 }

@@ -1,12 +1,12 @@
-//! Elements and attributes that MuJoCo added after 3.3.0, through 4.0. They are read if they change nothing or only have another name, and
-//! refused by their name otherwise.
+//! Elements and attributes that MuJoCo added after 3.3.0, through 4.0. They are accepted if they change nothing or only have another name, and
+//! refused by name otherwise.
 
 /// The treatment of an attribute that MuJoCo added after 3.3.0.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum LaterAttribute {
     /// The value changes nothing: the attribute is dropped.
     Nothing,
-    /// It is replaced by this attribute with this value.
+    /// The attribute is replaced by this one with this value.
     As(&'static str, &'static str),
     /// It has no counterpart: an error.
     Refused,
@@ -24,7 +24,7 @@ enum NeutralValue {
     Never,
 }
 
-/// Elements, an attribute that they have in later versions, and with which values it changes nothing.
+/// Elements, an attribute that they have in later versions, and the values with which it changes nothing.
 const ATTRIBUTES: &[(&[&str], &str, NeutralValue)] = &[
     // MuJoCo writes these when it saves a model
     (&["compiler"], "savecanonical", FLAG),
@@ -113,8 +113,7 @@ const ELEMENTS: &[(&str, &str)] = &[
     ("sensor", "tendonactuatorfrc"),
 ];
 
-/// Returns the treatment of an attribute that an element, which `has` others, does not have in 3.3.0; `None` if later versions do not have it,
-/// either.
+/// Returns the treatment of an attribute that an element, which `has` others, does not have in 3.3.0; `None` if later versions do not have it either.
 pub(super) fn attribute(element: &str, has: impl Fn(&str) -> bool, name: &str, text: &str) -> Option<LaterAttribute> {
     match (element, name, text) {
         ("light", "type", "spot") => return Some(LaterAttribute::As("directional", "false")),
@@ -213,7 +212,7 @@ mod tests {
     fn the_rest_is_refused_by_its_name() {
         let later = |content: &str, what: &str| {
             let error = load(content).expect_err("of a later version").to_string();
-            let expected = format!("{what} is of a later MuJoCo than 3.3.0, whose language this is: remove it");
+            let expected = format!("{what} was added after MuJoCo 3.3.0, the version supported here: remove it");
             assert!(error.ends_with(&expected), "{error}");
         };
         later(&scene("<light type='point'/>", ""), "attribute \"type\"");

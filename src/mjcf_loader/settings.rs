@@ -69,21 +69,21 @@ const LENGTH_RANGES: Keywords<LengthRangeMode> = words! {
 pub struct LengthRange {
     /// Which actuators get their `lengthrange`.
     pub mode: LengthRangeMode,
-    /// Whether a `lengthrange` that is given counts.
+    /// Whether a given `lengthrange` is used.
     pub useexisting: bool,
-    /// Whether the limit of the joint or the tendon counts.
+    /// Whether the limit of the joint or the tendon is used.
     pub uselimit: bool,
-    /// Norm of the acceleration with which the actuator is pulled and pushed in a simulation.
+    /// Norm of the acceleration with which the simulation pulls and pushes the actuator.
     pub accel: f64,
-    /// Greatest norm of the force that does it; 0 for no bound.
+    /// Greatest norm of the force for this; 0 for no bound.
     pub maxforce: f64,
-    /// Time constant at which velocities are slowed down, s.
+    /// Time constant of the damping of velocities, s.
     pub timeconst: f64,
     /// Time step of the simulation, s; 0 for that of the model.
     pub timestep: f64,
     /// Duration of the simulation in each direction, s.
     pub inttotal: f64,
-    /// Time at its end in which the length is measured, s.
+    /// Time at the end of the simulation in which the length is measured, s.
     pub interval: f64,
     /// Largest change of the length in that time, relative to the range.
     pub tolrange: f64,
@@ -92,14 +92,14 @@ pub struct LengthRange {
 table! {
     fields LengthRange {
         "mode" mode: LengthRangeMode = LengthRangeMode::Muscle, LENGTH_RANGES, "Which actuators get their `lengthrange`.";
-        "useexisting" useexisting: bool = true, FLAG, "Whether a `lengthrange` that is given counts.";
-        "uselimit" uselimit: bool = false, FLAG, "Whether the limit of the joint or the tendon counts.";
-        "accel" accel: f64 = 20.0, real(Any), "Norm of the acceleration with which the actuator is pulled and pushed in a simulation.";
-        "maxforce" maxforce: f64 = 0.0, real(Any), "Greatest norm of the force that does it; 0 for no bound.";
-        "timeconst" timeconst: f64 = 1.0, real(Any), "Time constant at which velocities are slowed down, s.";
+        "useexisting" useexisting: bool = true, FLAG, "Whether a given `lengthrange` is used.";
+        "uselimit" uselimit: bool = false, FLAG, "Whether the limit of the joint or the tendon is used.";
+        "accel" accel: f64 = 20.0, real(Any), "Norm of the acceleration with which the simulation pulls and pushes the actuator.";
+        "maxforce" maxforce: f64 = 0.0, real(Any), "Greatest norm of the force for this; 0 for no bound.";
+        "timeconst" timeconst: f64 = 1.0, real(Any), "Time constant of the damping of velocities, s.";
         "timestep" timestep: f64 = 0.01, real(Any), "Time step of the simulation, s; 0 for that of the model.";
         "inttotal" inttotal: f64 = 10.0, real(Any), "Duration of the simulation in each direction, s.";
-        "interval" interval: f64 = 2.0, real(Any), "Time at its end in which the length is measured, s.";
+        "interval" interval: f64 = 2.0, real(Any), "Time at the end of the simulation in which the length is measured, s.";
         "tolrange" tolrange: f64 = 0.05, real(Any), "Largest change of the length in that time, relative to the range.";
     }
 }
@@ -267,7 +267,7 @@ table! {
 const TWO_MEMORIES: &str = "memory and njmax or nstack are two ways to say the same: give one of them";
 
 impl Size {
-    /// Reads a section; later ones win.
+    /// Reads a section; later sections take precedence.
     ///
     /// # Errors
     /// It sets MuJoCo's memory in two ways.
@@ -283,7 +283,7 @@ impl Size {
 }
 
 impl Compiler {
-    /// Reads a section; later ones win. The directory of all assets applies where the section names none of its own.
+    /// Reads a section; later sections take precedence. The directory of all assets applies if the section names none.
     pub fn section(&mut self, e: &Element) {
         if let Some(dir) = e.text("assetdir") {
             dir.clone_into(&mut self.texturedir);
@@ -317,7 +317,7 @@ impl Visual {
         Ok(())
     }
 
-    /// Returns the settings as the model has them: MuJoCo stores reals in single precision.
+    /// Returns the settings in the form of the model: MuJoCo stores reals in single precision.
     pub fn compiled(&self) -> model::Visual {
         let Visual {
             global,

@@ -104,7 +104,7 @@ fn velocities_are_those_that_lead_from_pose_to_pose() {
     let mut env = blueprint.env().expect("an environment");
     env.reset(Some(1)).expect("no divergence");
     let dt = env.blueprint().dt();
-    // a joint at 2 rad/s in a motion of another rate than the steps, and a root that turns at 1 rad/s and climbs
+    // a joint at 2 rad/s in a motion whose rate differs from that of the steps, and a root that turns at 1 rad/s and climbs
     let (rate, frames) = (100.0, 21);
     let time = |k: usize| k as f64 / rate;
     let angles = (0..frames).map(|k| 2.0 * time(k) - 1.0).collect();
@@ -215,8 +215,8 @@ fn hostile_tables_are_refused_with_their_line() {
         ("time,a\n0,nan\n", "frame 0 of \"a\" is NaN"),
         ("time,a\n0,inf\n", "expected an angle in rad"),
         ("time,a\n0,90\n", "--degrees"),
-        ("time,a\n0,0\n0,0\n", "expected ascending ones"),
-        ("time,a\nnan,0\n0,0\n", "expected ascending ones"),
+        ("time,a\n0,0\n0,0\n", "expected ascending times"),
+        ("time,a\nnan,0\n0,0\n", "expected ascending times"),
         ("time,a\n0,0\n1e-300,0\n", "the rate is"),
         ("time,a\n0,0\n1e9,0\n", "motion_seconds"),
         ("time,a\n0,0\n1,0\n1.1,0\n", "resample"),

@@ -120,7 +120,7 @@ pub fn write(out: &mut impl Write, env: &Env, age: f64) -> io::Result<()> {
     write_standards(out, figures, age)
 }
 
-/// Writes the greatest torques by both settings of `strength`, and their ratios to the torque of gravity.
+/// Writes the greatest torques under both settings of `strength`, and their ratios to the torque of gravity.
 pub fn write_strength(out: &mut impl Write, rows: &[StrengthRow]) -> io::Result<()> {
     writeln!(out, "  greatest torques, N m, and over that of gravity")?;
     let columns = ["gravity", "volume", "ratio", "infant", "ratio"];
@@ -164,7 +164,7 @@ fn geom_radius(model: &Model, body: &str) -> Option<f64> {
     model.geom_size.get(geom).map(|size| size[0])
 }
 
-/// Returns the authors' value of an age, or those of the ages around it.
+/// Returns the authors' value for an age, or the values for the ages around it.
 fn expected(row: &Row, age: f64) -> String {
     let above = AGES.partition_point(|a| *a < age).min(AGES.len() - 1);
     if AGES[above] == age || above == 0 {

@@ -245,7 +245,7 @@ fn write_spaces(out: &mut impl Write, env: &Env) -> io::Result<()> {
     Ok(())
 }
 
-/// Writes what each number of the observation is.
+/// Writes the meaning of each number of the observation.
 fn write_observation(out: &mut impl Write, env: &Env) -> io::Result<()> {
     writeln!(out, "  components of `observation`")?;
     let proprioception = env.senses().proprioception();
@@ -284,7 +284,7 @@ fn write_observation(out: &mut impl Write, env: &Env) -> io::Result<()> {
     Ok(())
 }
 
-/// Writes the way of each sense to the observation, and that of actions to the actuators.
+/// Writes the path from each sense to the observation, and from actions to the actuators.
 fn write_pipeline(out: &mut impl Write, env: &Env) -> io::Result<()> {
     writeln!(out, "\nFrom the senses to the observation")?;
     for (sense, chain) in env.senses().transforms() {

@@ -121,7 +121,7 @@ impl Source {
         self.blueprint_with(compat, None)
     }
 
-    /// Builds the environment's blueprint with another renderer than that of the configuration.
+    /// Builds the environment's blueprint with a renderer other than the configured one.
     fn blueprint_with(&self, compat: Compat, renderer: Option<RendererKind>) -> Result<Blueprint, Box<dyn Error>> {
         let mut config = self.read(compat)?;
         config.renderer = renderer.unwrap_or(config.renderer);

@@ -14,7 +14,7 @@ use babybench::model::Model;
 const SCALE: f64 = 640.0;
 /// Width of an infant's place, m.
 const PLACE: f64 = 0.52;
-/// Free space above the tallest, m.
+/// Free space above the tallest infant, m.
 const ABOVE: f64 = 0.06;
 /// Height of the labels below the ground, pixels.
 const BELOW: usize = 92;

@@ -26,9 +26,9 @@ struct CurveLine {
 struct CurveChart {
     unit: &'static str,
     lines: Vec<CurveLine>,
-    /// One for each episode.
+    /// One value per episode.
     dots: Vec<f64>,
-    /// A height to be reached, with its name.
+    /// A target height, with its name.
     goal: Option<(f64, String)>,
     /// Ends of the axis of values.
     bottom: f64,
@@ -79,13 +79,13 @@ pub(super) fn curve(records: &[Info], baseline: Option<&Baseline>, reachable: us
     Some(draw(&chart, records.len()))
 }
 
-/// Returns the number of parts touched in an episode, mean of both hands.
+/// Returns the number of parts touched in an episode, averaged over both hands.
 fn touched_alone(record: &Info) -> f64 {
     let touches = record.behavior.touches();
     touches.map_or(0.0, |t| 0.5 * (t[0].len() + t[1].len()) as f64)
 }
 
-/// Returns the share of the steps of an episode with a hand in view, %, mean of both hands.
+/// Returns the share of an episode's steps with a hand in view, averaged over both hands, %.
 fn seen_alone(record: &Info) -> f64 {
     100.0 * Score::of_episode(record, record.steps).unwrap_or(0.0)
 }

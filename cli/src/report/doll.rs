@@ -52,7 +52,7 @@ pub(super) struct Doll {
 }
 
 impl Doll {
-    /// Draws MIMo alone, without clothes, as large as the picture; returns `None` if there is no MIMo or no camera. MIMo has a face if
+    /// Draws MIMo alone, without clothes, filling the picture; returns `None` if there is no MIMo or no camera. MIMo has a face if
     /// its textures are in `assets`.
     pub fn new(model: &Model, assets: &dyn AssetSource) -> Option<Self> {
         let mut doll = Self::posed(model, assets, [WIDTH, HEIGHT], ARMS[0])?;
@@ -129,7 +129,7 @@ impl Doll {
         })
     }
 
-    /// Looks at a point from so far away that half the picture's height is `half_height` m there.
+    /// Looks at a point from a distance at which half the picture's height is `half_height` m.
     fn aim(&mut self, center: Vec3, half_height: f64) {
         self.center = center;
         self.distance = half_height / pxfm::f_tan((0.5 * FOVY).to_radians());

@@ -16,7 +16,7 @@ const CELL: f64 = 3.0;
 const REACH: f64 = 126.0;
 /// Half of the scored field of view, degrees.
 const SCORED: f64 = 15.0;
-/// Maximum number of steps that are looked at.
+/// Maximum number of steps that are counted.
 const MAX_STEPS: usize = 20_000;
 /// Size of the drawing.
 const SIZE: f64 = 300.0;
@@ -145,8 +145,7 @@ impl Gaze {
         points
     }
 
-    /// Returns the share of the steps in which the hand was inside the scored field of view of the eye, to the size of
-    /// a cell; for tests.
+    /// Returns the share of the steps in which the hand was inside the eye's scored field of view, to the precision of a cell; for tests.
     #[cfg(test)]
     fn inside(&self, eye: usize, hand: usize) -> f64 {
         let center = |k: usize| (k as f64 + 0.5) * CELL - REACH;

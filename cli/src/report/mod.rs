@@ -46,7 +46,7 @@ pub enum ReportError {
         /// The folder.
         path: PathBuf,
     },
-    /// There are logs, but none that can be read.
+    /// There are logs, but none of them can be read.
     #[error("{}: none of the logs can be read: {reasons}", path.display())]
     Unreadable {
         /// The folder.
@@ -62,7 +62,7 @@ pub enum ReportError {
         /// Description of the fault.
         reason: String,
     },
-    /// The file system refuses.
+    /// The file system returned an error.
     #[error("{}: {source}", path.display())]
     Io {
         /// The file or folder.

@@ -38,7 +38,7 @@ pub(super) struct RunContents {
     /// The name of a user-defined task.
     pub task: Option<String>,
     pub config: Option<Config>,
-    /// The scene of the run, or, if that does not load here, one with the same MIMo.
+    /// The scene of the run, or one with the same MIMo if that does not load here.
     pub model: Option<Model>,
     pub touchables: Option<TouchableGeoms>,
     pub training: Vec<Info>,

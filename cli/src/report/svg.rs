@@ -4,7 +4,7 @@ use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
 use maud::{Markup, html};
 
-/// The page's style of charts, on white paper. Names of fonts are those of programs that draw such files.
+/// The page's style of charts, on white paper. Font names are those that programs for drawing such files know.
 const STYLE: &str = "svg{font:12px Helvetica,Arial,sans-serif;color:#1d2430}\
     .grid{stroke:#e2e3e6;fill:none}.tick{fill:#5c6675}.goal{stroke:#5a9367;stroke-dasharray:5 4}\
     .dot,.key.dots{fill:#5c6675;fill-opacity:.4}.line{fill:none;stroke-width:2.5;stroke-linejoin:round;stroke:#1d2430}\

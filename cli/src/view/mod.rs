@@ -19,11 +19,11 @@ use stage::Stage;
 
 /// The longest wait of [`View::attend`].
 const AT_MOST: Duration = Duration::from_millis(50);
-/// Longest delay that a late viewer catches up with: after a longer one it would race.
+/// Longest delay that a late viewer makes up for: after a longer one it would race.
 const LATE: Duration = Duration::from_millis(100);
 /// Time after its last request in which a page counts as open. Hidden tabs send no requests.
 const LOOKS: Duration = Duration::from_secs(2);
-/// Pictures do not follow each other faster while steps are due.
+/// Shortest time between pictures while steps are due.
 const PICTURE: Duration = Duration::from_millis(16);
 
 /// The next thing to do.
@@ -37,7 +37,7 @@ pub enum Next {
     Wait,
 }
 
-/// A viewer of one environment after the other, in real time unless people say otherwise.
+/// A viewer of one environment after another, in real time unless users choose otherwise.
 ///
 /// A program asks [`View::attend`] what to do, does it, and says so.
 pub struct View {
@@ -74,12 +74,12 @@ impl View {
         self.server.url()
     }
 
-    /// Returns whether the policy may move the environment; actions are 0 otherwise, and it can be pulled about.
+    /// Returns whether the policy may move the environment; otherwise actions are 0 and users can pull the bodies.
     pub fn moves(&self) -> bool {
         self.stage.moves
     }
 
-    /// Returns whether a page is open. A program that only shows its work need not call [`View::attend`] otherwise.
+    /// Returns whether a page is open. A program that only shows its work need not call [`View::attend`] while none is.
     pub fn watched(&mut self) -> bool {
         if self.waiting.is_none() {
             self.waiting = self.server.ask(Duration::ZERO);
@@ -87,8 +87,8 @@ impl View {
         self.waiting.is_some() || self.asked.is_some_and(|asked| asked.elapsed() < LOOKS)
     }
 
-    /// Answers requests for pictures, carries out the visitors' actions, and returns the next action of the program, after a twentieth of
-    /// a second at most (plus the time of a picture).
+    /// Answers requests for pictures, carries out the visitors' actions, and returns what the program does next, after at most a twentieth of a
+    /// second (plus the time of a picture).
     pub fn attend(&mut self, env: &mut Env) -> Next {
         let until = Instant::now() + AT_MOST;
         loop {

@@ -1,4 +1,4 @@
-//! A camera that people steer around a scene, and where its picture shows points of the world.
+//! A camera that users steer around a scene, and the mapping between its picture and the world.
 
 use babybench::Env;
 use babybench::math::{Mat3, Vec3, add_scaled, column, dot, sub};
@@ -15,7 +15,7 @@ pub struct Lens {
     right: Vec3,
     up: Vec3,
     forward: Vec3,
-    /// Height and width of what is seen at a distance of 1 m.
+    /// Height and width of the view at a distance of 1 m.
     high: f64,
     wide: f64,
 }
@@ -45,7 +45,7 @@ impl Orbit {
         self.camera.elevation = (self.camera.elevation - down).clamp(-89.9, 10.0);
     }
 
-    /// Moves the point with the picture, by parts of its height.
+    /// Moves the point with the picture, by fractions of its height.
     pub fn shift(&mut self, across: f64, down: f64, fovy: f64) -> Result<(), RenderError> {
         let lens = self.lens(fovy, 1.0)?;
         let height = lens.high * self.camera.distance;
@@ -54,7 +54,7 @@ impl Orbit {
         Ok(())
     }
 
-    /// Goes nearer or farther.
+    /// Moves nearer or farther.
     pub fn zoom(&mut self, factor: f64) {
         self.camera.distance = (self.camera.distance * factor).clamp(0.1, 30.0);
     }
@@ -75,14 +75,14 @@ impl Orbit {
 }
 
 impl Lens {
-    /// Returns the point of the world at a place of the picture and a distance (m) from the camera's plane.
+    /// Returns the point of the world at a position in the picture and a distance (m) from the camera's plane.
     pub fn place(&self, [x, y]: [f64; 2], depth: f64) -> Vec3 {
         let middle = add_scaled(self.eye, self.forward, depth);
         let across = add_scaled(middle, self.right, (x - 0.5) * self.wide * depth);
         add_scaled(across, self.up, (0.5 - y) * self.high * depth)
     }
 
-    /// Returns the place in the picture of a point of the world, and its distance (m) from the camera's plane; `None` behind the camera.
+    /// Returns the position in the picture of a point of the world, and its distance (m) from the camera's plane; `None` behind the camera.
     pub fn seen(&self, point: Vec3) -> Option<([f64; 2], f64)> {
         let arm = sub(point, self.eye);
         let depth = dot(arm, self.forward);

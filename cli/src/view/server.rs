@@ -1,4 +1,4 @@
-//! The server that browsers on this machine talk to: a page, and questions to which others find the answers.
+//! The server for browsers on this machine: it serves a page and passes on requests, which the program answers.
 
 use std::hash::{BuildHasher, Hasher, RandomState};
 use std::io::{self, Read, Write};
@@ -9,7 +9,7 @@ use std::sync::mpsc::{Receiver, RecvTimeoutError, SyncSender, sync_channel};
 use std::thread::{self, JoinHandle};
 use std::time::Duration;
 
-/// Bytes of the head of a request and of its body, at most.
+/// Maximum size of a request's head, and of its body, bytes.
 const HEAD: usize = 16 << 10;
 const BODY: usize = 16 << 10;
 /// Bytes of a refused request that are read so that its sender sees the answer.
@@ -23,7 +23,7 @@ const BUSY: Duration = Duration::from_secs(2);
 const HTML: &str = include_str!("page.html");
 const SCRIPT: &str = include_str!("page.js");
 
-/// The answer to a question: what was drawn, or what is wrong with it.
+/// The answer to a request: the picture, or what is wrong with the request.
 pub type Answer = Result<Vec<u8>, String>;
 
 /// A request of a page: the visitor's actions, line by line. The answer is the resulting picture.
@@ -52,7 +52,7 @@ struct Shared {
 }
 
 impl Server {
-    /// Starts to listen at a port, or at any free one for 0.
+    /// Starts to listen on a port; 0 chooses any free one.
     ///
     /// # Errors
     /// The port is taken.
@@ -87,7 +87,7 @@ impl Server {
         format!("http://{}{}", self.address, self.path)
     }
 
-    /// Waits for a question, up to a time limit.
+    /// Waits for a request, up to a time limit.
     pub fn ask(&self, wait: Duration) -> Option<Ask> {
         match self.asks.recv_timeout(wait) {
             Ok(ask) => {
@@ -175,7 +175,7 @@ fn serve(mut stream: TcpStream, shared: &Shared) -> io::Result<()> {
     }
 }
 
-/// Reads a request, whose start may be in `bytes`. What follows it stays there. `None` if the browser has disconnected.
+/// Reads a request, whose start may be in `bytes`. Bytes after the request stay there. `None` if the browser has disconnected.
 fn read(stream: &mut impl Read, bytes: &mut Vec<u8>) -> io::Result<Option<Result<Request, Refusal>>> {
     let mut more = [0; 4096];
     loop {
@@ -232,7 +232,7 @@ fn parse(bytes: &[u8]) -> Result<Option<(Request, usize)>, Refusal> {
 }
 
 /// Returns whether the request comes from a page of this server. Other pages in the same browser may not send any. A host name that only
-/// resolves to this machine (DNS rebinding) is another host. Ports may differ, because a tunnel may lead here.
+/// resolves to this machine (DNS rebinding) is another host. Ports may differ, because of tunnels.
 fn is_ours(request: &Request) -> bool {
     let name = request.host.rsplit_once(':').map_or(&*request.host, |(name, _)| name);
     let origin = request.origin.as_deref().map(|origin| origin.strip_prefix("http://"));

@@ -1,4 +1,4 @@
-//! A spring between a point of a body and a place in the world, with a stiffness proportional to the mass, for the page and for Python's window.
+//! A spring between a point of a body and a point of the world, with a stiffness proportional to the mass, for the page and for Python's window.
 
 use babybench::Env;
 use babybench::math::{Vec3, add, mat_t_vec, mat_vec, norm, scale, sub};
@@ -8,7 +8,7 @@ const STRENGTH: f64 = 12.0;
 /// The greatest force, in weights of the mass at the point, so that a distant pointer does not throw the infant out of the room.
 const MOST: f64 = 40.0;
 
-/// Pulls at a body of an environment, or at nothing.
+/// Pulls a body of an environment, or nothing.
 #[derive(Default)]
 pub struct Spring {
     held: Option<Held>,
@@ -24,7 +24,7 @@ struct Held {
 }
 
 impl Held {
-    /// Returns where the point of the body is now, m, in the world.
+    /// Returns the current position of the body's point in the world, m.
     fn at(&self, env: &Env) -> Option<Vec3> {
         let (pos, mat) = (env.state().xpos.get(self.body)?, env.state().xmat.get(self.body)?);
         Some(add(*pos, mat_vec(mat, self.point)))
@@ -48,7 +48,7 @@ impl Spring {
         self.held.is_some()
     }
 
-    /// Pulls to another place of the world, m.
+    /// Pulls towards another point of the world, m.
     pub fn aim(&mut self, target: Vec3) {
         if let Some(held) = &mut self.held {
             held.target = target;

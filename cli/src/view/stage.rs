@@ -1,4 +1,4 @@
-//! The stage that people see and act on: the camera, the spring, the clock's hands, and the picture.
+//! The stage that users see and act on: the camera, the spring, the clock, and the picture.
 
 use babybench::Env;
 use babybench::env::EnvError;
@@ -11,11 +11,11 @@ use super::orbit::{Lens, Orbit};
 use super::server::Answer;
 use super::spring::Spring;
 
-/// Pixels of a side of a picture.
+/// Side of a picture, pixels.
 const SIDE: std::ops::RangeInclusive<usize> = 16..=1600;
 /// Quality of pictures, of 100.
 const QUALITY: u8 = 88;
-/// Points of touch that a picture has at most.
+/// Maximum number of touch points in a picture.
 const POINTS: usize = 4000;
 /// Depth behind the visible surface up to which a point is drawn, m.
 const BEHIND: f64 = 0.012;
@@ -142,7 +142,7 @@ impl Stage {
         Ok(orbit.lens(fovy, width as f64 / height as f64)?)
     }
 
-    /// Grabs the body at a place of the picture, if there is one that can move.
+    /// Grabs the body at a position in the picture, if there is one that can move.
     fn hold(&mut self, env: &Env, place: [f64; 2]) -> Result<(), EnvError> {
         let [width, height] = self.size;
         let (mut geoms, mut depths) = (vec![-1; width * height], vec![0.0; width * height]);
@@ -164,7 +164,7 @@ impl Stage {
         Ok(())
     }
 
-    /// Draws images from the camera that shows.
+    /// Draws images from the current camera.
     fn draw(&mut self, env: &Env, images: ImageBuffers<'_>) -> Result<(), EnvError> {
         let mut poses = Poses::from(env.state());
         let named = self.camera.as_ref().and_then(|name| env.model().camera(name));
@@ -207,7 +207,7 @@ impl Stage {
         Ok(out)
     }
 
-    /// Returns what is drawn over the picture, in parts of its width and height: where skin feels something, and how strongly; contacts with
+    /// Returns what is drawn over the picture, in fractions of its width and height: where skin feels something, and how strongly; contacts with
     /// their forces; the spring.
     fn over(&mut self, env: &Env, depths: &[f32]) -> Result<serde_json::Value, EnvError> {
         let lens = self.lens(env)?;
@@ -243,7 +243,7 @@ impl Stage {
     }
 }
 
-/// Returns the pixel at a place of a picture, if it is in it.
+/// Returns the pixel at a position, if that is inside the picture.
 fn pixel([x, y]: [f64; 2], [width, height]: [usize; 2]) -> Option<usize> {
     let inside = 0.0..1.0;
     let (column, line) = ((x * width as f64) as usize, (y * height as f64) as usize);

@@ -77,13 +77,13 @@ def export(record: Record, formats: list[str], out: Path) -> dict[str, Path]:
     Raises:
         ValueError: The format does not exist, or the record has no episodes.
         ModuleNotFoundError: A library is not installed; nothing is written then.
-        FileExistsError: A file that would be written is there already; nothing is written then.
+        FileExistsError: A file that would be written already exists; then nothing is written.
     """
     check(formats)
     paths = {name: out / FORMATS[name].file for name in formats}
     for path in paths.values():
         if path.exists():
-            raise FileExistsError(f"{path}: is there already; name another folder, or remove it")
+            raise FileExistsError(f"{path} already exists; name another folder, or remove it")
     out.mkdir(parents=True, exist_ok=True)
     for name, path in paths.items():
         if name == "minari":

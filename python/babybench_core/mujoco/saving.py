@@ -25,7 +25,7 @@ def mj_saveLastXML(filename: str | os.PathLike[str], m: MjModel) -> None:
         raise TypeError(f"expected an MjModel of babybench.mujoco, not {type(m).__module__}.{type(m).__name__}")
     source = m._source
     if source is None:
-        raise ValueError("the document of this model is not known as text: it is not UTF-8")
+        raise ValueError("the document of this model is not UTF-8 text")
     fresh = MjModel._made(source.compile(), source)
     changed = [name for name, array in m._arrays.items() if array.tobytes() != fresh._arrays[name].tobytes()]
     if changed or m.opt._differs(fresh.opt):

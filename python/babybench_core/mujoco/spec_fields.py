@@ -237,7 +237,7 @@ class Numbers(Field):
     def __init__(
         self, xml: str, initial: Sequence[float], dtype: Any = np.float64, unset: bool = False, spread: bool = False
     ) -> None:
-        """Takes the name in MJCF, the default numbers, their type, and whether one number stands for all."""
+        """Takes the name in MJCF, the default numbers, their type, and whether a single number sets all."""
         super().__init__(xml)
         self.initial, self.dtype, self.unset, self.spread = list(initial), dtype, unset, spread
 
@@ -369,8 +369,8 @@ class Quat(Numbers):
         given = [name for name, _ in Orientation.FORMS if name and element._given(name) is not None]
         if given:
             raise ValueError(
-                f"{self.name} would have no effect, as alt.{given[0]} says the orientation: set alt.type to "
-                "mjtOrientation.mjORIENTATION_QUAT before"
+                f"{self.name} would have no effect because alt.{given[0]} defines the orientation: first set alt.type to "
+                "mjtOrientation.mjORIENTATION_QUAT"
             )
         super().store(element, array)
 

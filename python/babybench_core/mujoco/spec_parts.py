@@ -133,7 +133,7 @@ class _Layers(Field):
         """Sets the names."""
         own, given = element._spec._own, list(value)
         if given[0]:
-            raise ValueError("textures[0], that of the role user, is drawn by nothing: leave it empty")
+            raise ValueError("textures[0], for the role user, is never drawn: leave it empty")
         for at in own.children(element._at):
             own.remove(at, True)
         layered = any(given[2:])
@@ -266,7 +266,7 @@ class _Transmission(Field):
 
 
 class MjsActuator(Classed):
-    """An actuator. One of another kind than ``general`` becomes a ``general`` one when a field of these is requested."""
+    """An actuator. If its kind is not ``general``, it becomes a ``general`` one when a field of that kind is requested."""
 
     name = Text("name")
     gaintype = Word("gaintype", ("fixed", "affine", "muscle"), mjtGain)

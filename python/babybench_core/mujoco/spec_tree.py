@@ -152,7 +152,7 @@ class SpecTree:
         at = self._own.attach(parent, own, element._at, prefix, suffix)
         for name, content in other.assets.items():
             if self.assets.setdefault(name, content) != content:
-                raise ValueError(f"assets: both documents have a file {name!r}, with other contents")
+                raise ValueError(f"assets: both documents have a file {name!r}, with different contents")
         return self._wrap(
             at, type(element) if not isinstance(element, MjsBody) or at == element._at else _kind_of(self, at)
         )

@@ -58,7 +58,7 @@ def check_state(data: Any, model: Any = None) -> None:
     if not isinstance(data, MjData):
         raise TypeError(f"env.data must be a state of babybench.mujoco, MjData(model), not {type(data).__name__}")
     if model is not None and data.model is not model:
-        raise ValueError("env.data is the state of another model than env.model: make it with MjData(env.model)")
+        raise ValueError("env.data is the state of another model, not of env.model: make it with MjData(env.model)")
 
 
 def given_scene(model: Any) -> Scene:

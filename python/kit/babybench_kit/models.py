@@ -61,7 +61,7 @@ def _with_small_textures(config: dict[str, Any], xml: str, images: dict[str, byt
 
 
 def _grow(model: Any, core: Beneath) -> None:
-    """Copies the engine's numbers, in which MIMo has another age, to MuJoCo's model of a document."""
+    """Copies the engine's numbers for MIMo at another age to MuJoCo's model of a document."""
     for name in core.blueprint.MODEL_ARRAYS:
         own, array = getattr(model, name, None), np.asarray(core.blueprint.model_array(name))
         if name == "actuator_gear":
@@ -189,7 +189,7 @@ class Watched:
             written = now != self.seen[number]
             if name == "actuator_gear":
                 if written[:, 1:].any():
-                    raise ValueError("actuator_gear: the engine has the first number of each row only")
+                    raise ValueError("actuator_gear: the engine has only the first number of each row")
                 now, written = now[:, 0], written[:, 0]
             whole[written] = now[written]
             changes[name] = whole

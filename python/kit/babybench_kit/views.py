@@ -39,7 +39,7 @@ _DATA_HELP = (
 )
 _FIXED = "the engine's model cannot be changed: {name}; change the configuration or the MJCF files of the scene and make another"
 
-# what MuJoCo stores in another way than the engine
+# what MuJoCo stores differently from the engine
 _BYTES = frozenset(
     {
         "jnt_limited",
@@ -207,7 +207,7 @@ class DataView(_Named):
     def __setattr__(self, name: str, value: Any) -> None:
         if name == "eq_active":
             raise AttributeError(
-                "data.eq_active cannot be written: write model.eq_active0, which holds from the next reset on"
+                "data.eq_active cannot be written: write model.eq_active0, which takes effect at the next reset"
             )
         if name not in self._arrays:
             raise AttributeError(f"{name} of the state cannot be replaced")
@@ -224,7 +224,7 @@ class DataView(_Named):
 
     @property
     def eq_active(self) -> NDArray[np.uint8]:
-        """Returns which equality constraints are active; ``model.eq_active0`` decides which are from the next reset on."""
+        """Returns which equality constraints are active; ``model.eq_active0`` sets them at the next reset."""
         active, parts = np.zeros(self.model.neq, np.uint8), self._sync.core.parts
         parts.fill_start(active, [np.zeros(self.model.nq), np.zeros(self.model.nv)])
         active.flags.writeable = False
@@ -232,7 +232,7 @@ class DataView(_Named):
 
     @property
     def contact(self) -> ContactList:
-        """Returns the contacts of the start of the last physics step."""
+        """Returns the contacts at the start of the last physics step."""
         if self._contacts is None:
             self.__dict__["_contacts"] = ContactList(self._env.contacts())
         contacts: ContactList = self._contacts

@@ -10,8 +10,8 @@ use crate::render::{CpuRenderer, Poses, RenderError, Scenery, View, luma};
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum FrameError {
-    /// A picture of wrong size.
-    #[error("the frame has {found} bytes but the video's have {expected}")]
+    /// A picture has the wrong size.
+    #[error("the frame has {found} bytes, but those of the video have {expected}")]
     Size {
         /// Bytes found.
         found: usize,
@@ -40,7 +40,7 @@ pub enum Panel<'a> {
     Side,
     /// Both eyes in one picture: the left in red, the right in green and blue.
     Binocular,
-    /// A picture of 240 x 240 pixels made elsewhere, such as that of the skin: red, green, blue, rows from the top.
+    /// A picture of 240 x 240 pixels from elsewhere, such as that of the skin: red, green, blue, rows from the top.
     Picture(&'a [u8]),
 }
 

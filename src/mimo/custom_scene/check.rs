@@ -19,14 +19,14 @@ const COMPILER: [(&str, &str, &str); 3] = [
     ),
 ];
 
-/// The include that a document with a second infant has.
+/// The include of a document with a second infant.
 const SECOND: &str = "other_mimo.xml";
 
 /// The time step of all scenes, s.
 const TIMESTEP: f64 = 0.005;
 
 impl<A: AssetSource> CustomScene<A> {
-    /// Checks that the document has a whole MIMo, at his place, and no setting that would change him.
+    /// Checks that the document has a complete MIMo, at his place, and no setting that would change him.
     pub fn check(&self, source: &SceneSource<'_>) -> Result<(), SceneError> {
         let read = Tree::read(source.document, source.path, source.assets, &Limits::default());
         let (tree, _) = read.map_err(|e| self.localized_load(e))?;
@@ -66,7 +66,7 @@ impl<A: AssetSource> CustomScene<A> {
         Ok(())
     }
 
-    /// Checks that MIMo hangs on the body that is named after his place.
+    /// Checks that MIMo is attached to the body that defines his place.
     fn check_place(&self, tree: &Tree) -> Result<(), CustomSceneError> {
         let hip = |at: &usize| tree.nodes[*at].name == "body" && tree.nodes[*at].attribute("name") == Some(ROOT);
         let around = |node: &Node| node.children.iter().any(hip);
@@ -119,7 +119,7 @@ fn fault(tree: &Tree, at: usize) -> Option<String> {
             let mut outside = named.filter(|(_, path)| path.split('/').next() == Some(".."));
             let (name, path) = outside.next()?;
             Some(format!(
-                "{name}=\"{path}\" lies outside of the folder of the document; move it there"
+                "{name}=\"{path}\" lies outside the document's folder; move it there"
             ))
         }
         _ => None,

@@ -12,7 +12,7 @@ pub(crate) const RATIO_AGES: [f64; 8] = [0.0, 1.0, 2.0, 3.0, 4.0, 6.0, 9.0, 12.0
 /// The age of the original proportions, months.
 pub(super) const GROWN: f64 = 18.0;
 
-/// The reference of a ratio: a torque that the strength is relative to.
+/// The reference of a ratio: the torque to which the strength is relative.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Against {
     /// The greatest torque of gravity about a joint.
@@ -21,14 +21,14 @@ pub(super) enum Against {
     Support,
     /// Half the weight times the arm of a grip. The numbers are shares of the original body's ratio.
     Grip,
-    /// The strength that follows the volume of the part. The numbers are shares of it.
+    /// The strength that follows the volume of the part. The numbers are shares of that strength.
     Volume,
 }
 
 /// A ratio over age.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct RatioCurve {
-    /// The movement whose strength it is.
+    /// The movement to which the strength belongs.
     pub name: &'static str,
     /// The motor whose torque has the ratio, and the direction: 0 negative, 1 positive.
     pub reference: (&'static str, usize),
@@ -60,7 +60,7 @@ impl RatioCurve {
     }
 }
 
-/// A group of joints whose strength has a factor of its own.
+/// A group of joints whose strength has its own factor.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Group {
     Neck,
@@ -119,13 +119,13 @@ curves! {
     TRUNK_FORWARD, "trunk, forward", "act:hip_bend", 1, Against::Joint("robot:hip_bend1"),
         [0.1, 0.12, 0.18, 0.25, 0.35, 0.50, 0.60, 0.62], Unsourced, "ours; leaning and turning of the trunk follow it";
     SHOULDER, "shoulder, abduction", "act:left_shoulder_abduction", 1, Against::Joint("robot:left_shoulder_ad_ab"),
-        [2.0, 2.0, 2.2, 2.6, 3.2, 4.0, 5.0, 5.5], Unsourced, "arms wave at birth and reach at 4 months; numbers are ours, other shoulder motors follow";
+        [2.0, 2.0, 2.2, 2.6, 3.2, 4.0, 5.0, 5.5], Unsourced, "arms wave at birth and reach at 4 months; the numbers are our choice, other shoulder motors follow";
     ARM, "elbow and wrist", "act:left_elbow", 0, Against::Volume,
         [0.5, 0.5416666666666666, 0.5833333333333334, 0.625, 0.6666666666666666, 0.75, 0.875, 1.0], Unsourced, "ours";
     HIP_BEND, "hip, bend", "act:left_hip_flex", 0, Against::Joint("robot:left_hip1"),
         [2.0, 1.5, 1.3, 1.5, 1.8, 2.5, 3.5, 4.0], Unsourced, "kicks at birth, steps lost at 2 to 3 months (Thelen et al. 1982); spreading and turning follow, and bending of the knee";
     HIP_STRETCH, "hip, stretch", "act:left_hip_flex", 1, Against::Support,
-        [0.4, 0.4, 0.5, 0.6, 0.7, 0.85, 1.0, 1.05], Unsourced, "partial support at birth, stands with help at 7.6 months (WHO 2006); numbers are ours";
+        [0.4, 0.4, 0.5, 0.6, 0.7, 0.85, 1.0, 1.05], Unsourced, "partial support at birth, stands with help at 7.6 months (WHO 2006); the numbers are our choice";
     KNEE_STRETCH, "knee, stretch", "act:left_knee", 1, Against::Support,
         [0.2, 0.2, 0.25, 0.3, 0.35, 0.45, 0.8, 1.1], Measured, "calibrated on support by the legs: stands with help at 7.6 months (WHO 2006); ankles and toes follow";
     GRIP, "grip", "act:left_fingers", 0, Against::Grip,

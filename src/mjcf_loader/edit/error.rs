@@ -10,7 +10,7 @@ use crate::text::{quoted, suggestion};
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum EditError {
-    /// An element that may not stand in another.
+    /// The element is not allowed in the other.
     #[error("<{parent}> cannot hold <{}>{}", quoted(.name), suggestion(*.nearest))]
     UnknownElement {
         /// The element around it.
@@ -20,7 +20,7 @@ pub enum EditError {
         /// A name that may have been meant.
         nearest: Option<&'static str>,
     },
-    /// An attribute that an element does not have.
+    /// The element does not have the attribute.
     #[error("<{element}> has no attribute \"{}\"{}", quoted(.name), suggestion(*.nearest))]
     UnknownAttribute {
         /// The element.
@@ -30,7 +30,7 @@ pub enum EditError {
         /// A name that may have been meant.
         nearest: Option<&'static str>,
     },
-    /// A value that an attribute cannot have.
+    /// The attribute does not accept the value.
     #[error("<{element}>: {kind}")]
     Value {
         /// The element.
@@ -38,10 +38,10 @@ pub enum EditError {
         /// Description of the fault.
         kind: ErrorKind,
     },
-    /// An element that is not in the document, or no longer.
+    /// The element is not in the document, or was removed.
     #[error("{0} is not in this document: it was removed, or belongs to another document")]
     NoElement(ElementId),
-    /// An element that every document needs.
+    /// Every document needs the element.
     #[error("<{0}> cannot be removed: a document needs it")]
     Needed(&'static str),
     /// No element of this kind has the name.
@@ -52,7 +52,7 @@ pub enum EditError {
         /// The name.
         name: String,
     },
-    /// Two elements of a kind with the same name.
+    /// Two elements of a kind have the same name.
     #[error("{kind} name \"{}\" is used twice: attach with another prefix or suffix", quoted(.name))]
     DuplicateName {
         /// Kind of element.
@@ -60,16 +60,16 @@ pub enum EditError {
         /// The name.
         name: String,
     },
-    /// An element that cannot be attached.
+    /// The element cannot be attached.
     #[error("cannot attach: {0}")]
     Unattachable(&'static str),
     /// The documents have different settings of `compiler` that would change the meaning of numbers.
-    #[error("cannot attach: compiler has {0}: set it alike in both documents")]
+    #[error("cannot attach: compiler has {0}: use the same value in both documents")]
     Settings(Box<SettingsConflict>),
-    /// A default class that does not exist.
+    /// The default class does not exist.
     #[error("unknown default class \"{}\"", quoted(.0))]
     UnknownClass(String),
-    /// An attribute that has no default, so that a class cannot turn back what the main class of the other document says.
+    /// The attribute has no default, so a class cannot undo the setting of the other document's main class.
     #[error(
         "cannot attach: the main default class gives <{element}> {attribute}, which the attached elements would get: give them a value for it"
     )]
@@ -79,7 +79,7 @@ pub enum EditError {
         /// The attribute.
         attribute: &'static str,
     },
-    /// A document that cannot be read or compiled.
+    /// The document cannot be read or compiled.
     #[error(transparent)]
     Load(#[from] LoadError),
 }
@@ -89,9 +89,9 @@ pub enum EditError {
 pub struct SettingsConflict {
     /// The attribute.
     pub attribute: &'static str,
-    /// Its value in the document that the other is attached to.
+    /// Its value in the document to which the other is attached.
     pub own: String,
-    /// Its value in the document that is attached.
+    /// Its value in the attached document.
     pub other: String,
 }
 

@@ -120,8 +120,8 @@ fn what_cannot_be_says_so_and_changes_nothing() {
     let strict = read(&ROOM.replace("autolimits=\"true\"", "autolimits=\"false\""));
     told(
         room.attach(room.world(), &strict, hip, "a", "").map(drop),
-        "cannot attach: compiler has autolimits=\"true\" here, and autolimits=\"false\" where the attached body is from: set it alike in both \
-         documents",
+        "cannot attach: compiler has autolimits=\"true\" here, and autolimits=\"false\" where the attached body is from: use the same value in \
+         both documents",
     );
     let keyed = read(&ROOM.replace("<sensor>", "<keyframe><key ctrl='1 1 1'/></keyframe><sensor>"));
     let hip = keyed.find(Kind::Body, "hip").unwrap();

@@ -32,7 +32,7 @@ pub enum AssetError {
     /// The source has no such file.
     #[error("file \"{}\" does not exist", quoted(.0))]
     NotFound(String),
-    /// A path that is empty, absolute, leads out of the source or uses characters other than `/` to separate.
+    /// A path is empty, absolute, leads out of the source, or uses separators other than `/`.
     #[error("path \"{}\" is not a relative path inside the asset source", quoted(.0))]
     BadPath(String),
     /// The file is larger than [`crate::Limits::asset_bytes`].
@@ -43,15 +43,15 @@ pub enum AssetError {
         /// The limit, bytes.
         limit: u64,
     },
-    /// The file lies outside of the folder whose files a document may name.
-    #[error("file \"{}\" lies outside of the folder of the document, \"{}\"; move it there", quoted(.path), quoted(.folder))]
+    /// The file lies outside the folder whose files a document may name.
+    #[error("file \"{}\" lies outside the document's folder, \"{}\"; move it there", quoted(.path), quoted(.folder))]
     Outside {
         /// The path.
         path: String,
         /// The folder.
         folder: String,
     },
-    /// A custom file has the name of one of the library's, so that the name means both.
+    /// A custom file has the name of one of the library's files, so the name is ambiguous.
     #[error("file \"{}\" has the name of a file of the library; rename yours", quoted(.0))]
     Shadowed(String),
     /// The file system failed.
@@ -88,10 +88,10 @@ pub trait AssetSource: Send + Sync {
     }
 }
 
-/// Joins a directory of the source and a relative reference in a document. `..` may climb up to the root, not beyond.
+/// Joins a directory of the source and a relative reference in a document. `..` may climb to the root, but not beyond.
 ///
 /// # Errors
-/// [`AssetError::BadPath`]: empty, absolute, beyond the root, or with another separator than `/`.
+/// [`AssetError::BadPath`]: empty, absolute, beyond the root, or with a separator other than `/`.
 pub fn resolve(dir: &str, file: &str) -> Result<String, AssetError> {
     let bad = || AssetError::BadPath(file.to_owned());
     if file.is_empty() || file.starts_with('/') || file.contains(['\\', ':', '\0']) {
@@ -159,8 +159,8 @@ impl AssetSource for MemoryAssets {
     }
 }
 
-/// A source of files that are embedded in the program, as pairs of path and content. A file without content is one that this build
-/// leaves out: documents may name it, but reading it is an error.
+/// A source of files that are embedded in the program, as pairs of path and content. This build leaves out files without content: documents may name
+/// them, but reading them is an error.
 #[derive(Clone, Copy, Debug)]
 pub struct EmbeddedAssets(pub &'static [(&'static str, &'static [u8])]);
 
@@ -183,7 +183,7 @@ impl AssetSource for EmbeddedAssets {
     }
 }
 
-/// Several sources, one over another: the topmost that has a file gives it.
+/// Several layered sources: a file comes from the topmost source that has it.
 #[derive(Clone)]
 pub struct Overlay {
     /// The topmost last.

@@ -9,17 +9,17 @@ use std::collections::BTreeMap;
 use super::constants::{LIST, ShortTensor, name, of_attribute, of_constant, of_tensor, parts};
 use super::{runtime, wire};
 
-/// Greatest number of values that one operator may make.
+/// Greatest number of values that one operator may produce.
 const MOST: f64 = (1 << 26) as f64;
 /// Greatest factor by which one operator may enlarge its input.
 const MOST_LARGER: f64 = (1 << 16) as f64;
-/// Greatest number of turns of a loop.
+/// Greatest number of iterations of a loop.
 const MOST_TURNS: f64 = (1 << 20) as f64;
-/// Greatest number of graphs around a graph. The runtime plans the graph of an operator several times whenever it plans the operator, so
-/// that time and memory grow by a factor with each level: two kilobytes with twelve levels would take gigabytes.
+/// Greatest nesting depth of graphs. The runtime plans the graph of an operator several times whenever it plans the operator, so time and memory are
+/// multiplied with each level: two kilobytes with twelve levels would take gigabytes.
 const NESTED: usize = 4;
 
-/// Lists numbers as an error message has them.
+/// Lists numbers in the form of an error message.
 fn list(values: &[f64]) -> String {
     let values: Vec<String> = values.iter().take(LIST).map(f64::to_string).collect();
     format!("[{}]", values.join(", "))
@@ -30,7 +30,7 @@ fn operator(node: &[u8]) -> String {
     String::from_utf8_lossy(parts(node, 4).first().copied().unwrap_or_default()).into_owned()
 }
 
-/// Multiplies sizes; those below 1, and what is not a number, do not make it smaller.
+/// Multiplies sizes; those below 1, and NaN, do not reduce the product.
 fn product(sizes: impl IntoIterator<Item = f64>) -> f64 {
     sizes.into_iter().map(|size| size.abs().max(1.0)).product()
 }
@@ -82,7 +82,7 @@ fn check_factors(node: &[u8], factors: &[f64]) -> Result<(), String> {
     Ok(())
 }
 
-/// Checks a row of numbers from a start to a limit: how many there are, and that each step gets it further.
+/// Checks a range of numbers from a start to a limit: their count, and that each step makes progress.
 fn check_range([start, limit, step]: [Option<&ShortTensor>; 3]) -> Result<(), String> {
     let Some(limit) = limit else { return Ok(()) };
     let one = |numbers: Option<&ShortTensor>, or| numbers.and_then(|n| n.values.first().copied()).unwrap_or(or);
@@ -105,7 +105,8 @@ fn check_range([start, limit, step]: [Option<&ShortTensor>; 3]) -> Result<(), St
 /// Constants by name: of a graph, after those of the graphs around it.
 type ConstantScopes<'m> = Vec<BTreeMap<&'m [u8], ShortTensor>>;
 
-/// Checks the bytes of a model and the sizes in it, and returns the number of operators in its graph; the error says which operator makes too much.
+/// Checks the bytes of a model and the sizes in it, and returns the number of operators in its graph; the error names the operator that produces too
+/// much.
 pub(super) fn check(model: &[u8]) -> Result<usize, String> {
     wire::check(model)?;
     let mut constants = Vec::new();
@@ -117,15 +118,18 @@ pub(super) fn check(model: &[u8]) -> Result<usize, String> {
     Ok(most)
 }
 
-/// Checks a graph within a limit of operators, and those in its operators; how deep they are was checked before.
+/// Checks a graph and the graphs in its operators within a limit of operators; their depth was checked before.
 fn check_graph<'m>(graph: &'m [u8], most: usize, constants: &mut ConstantScopes<'m>) -> Result<(), String> {
     let nodes = parts(graph, 1);
     // there is an entry for each graph around it
     if constants.len() > NESTED {
-        return Err(format!("it has graphs within more than {NESTED} graphs"));
+        return Err(format!("it nests graphs more than {NESTED} deep"));
     }
     if nodes.len() > most {
-        return Err(format!("a graph of it has {} operators, more than {most}", nodes.len()));
+        return Err(format!(
+            "one of its graphs has {} operators, more than {most}",
+            nodes.len()
+        ));
     }
     let mut own = BTreeMap::new();
     for tensor in parts(graph, 5) {
@@ -160,7 +164,7 @@ fn check_graph<'m>(graph: &'m [u8], most: usize, constants: &mut ConstantScopes<
     Ok(())
 }
 
-/// Returns whether an operator makes the numbers that it is given, in another form.
+/// Returns whether an operator only changes the form of its input.
 fn passes_on(node: &[u8]) -> bool {
     let same: [&[u8]; 6] = [b"Cast", b"Flatten", b"Identity", b"Reshape", b"Squeeze", b"Unsqueeze"];
     parts(node, 4).first().is_some_and(|operator| same.contains(operator))
@@ -192,7 +196,7 @@ fn check_inputs(node: &[u8], constants: &ConstantScopes<'_>) -> Result<(), Strin
 mod tests {
     use super::*;
 
-    /// Returns a field with bytes in it, of any length.
+    /// Returns a field that contains bytes, of any length.
     fn field_of(number: u8, bytes: &[u8]) -> Vec<u8> {
         let mut out = vec![number << 3 | 2];
         let mut rest = bytes.len();
@@ -204,7 +208,7 @@ mod tests {
         [&out, bytes].concat()
     }
 
-    /// Returns a field with bytes in it, fewer than 128.
+    /// Returns a field that contains fewer than 128 bytes.
     fn field(number: u8, bytes: &[u8]) -> Vec<u8> {
         [&[number << 3 | 2, bytes.len() as u8], bytes].concat()
     }
@@ -258,7 +262,7 @@ mod tests {
         assert!(check(&branch).is_err_and(|e| e.contains("the operator Conv has pads of")));
     }
 
-    /// A list of numbers of a type, and how it is named.
+    /// A list of numbers of a type, with its name.
     fn tensor(name: &str, kind: u8, raw: &[u8]) -> Vec<u8> {
         let fields = [vec![2 << 3, kind], field(8, name.as_bytes()), field(9, raw)].concat();
         field(5, &fields)

@@ -102,7 +102,7 @@ pub(super) fn check(model: &[u8]) -> Result<(), String> {
 fn walk(bytes: &[u8], message: MessageType, depth: usize) -> Result<(), String> {
     let malformed = || "it is damaged, or no ONNX model: its bytes are not protobuf".to_string();
     let Some(depth) = depth.checked_sub(1) else {
-        return Err(format!("it has more than {DEPTH} levels of messages in messages"));
+        return Err(format!("it has more than {DEPTH} levels of nested messages"));
     };
     for (number, field) in fields(bytes).ok_or_else(malformed)? {
         let WireField::Bytes(data) = field else { continue };

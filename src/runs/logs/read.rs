@@ -175,7 +175,7 @@ impl<'a> RecordConverter<'a> {
         let behavior = discriminant(&info.behavior);
         // a mean over records of two behaviors would mean nothing
         if *self.behavior.get_or_insert(behavior) != behavior || first.is_some() && first != self.task {
-            return Err(format!("record {k} has another behavior than record 0"));
+            return Err(format!("record {k} has a different behavior from record 0"));
         }
         self.touches += info.behavior.touches().map_or(0, |t| t[0].len() + t[1].len());
         // the memo of a pickle lets a small file hold the same list a million times
@@ -259,7 +259,7 @@ pub fn read_records(path: impl AsRef<Path>) -> Result<Vec<Info>, LogError> {
     read_records_with(path, &Limits::DEFAULT)
 }
 
-/// Reads a training log by its path, within limits of the caller's choice.
+/// Reads a training log by its path, within the given limits.
 ///
 /// # Errors
 /// As [`read_training`].

@@ -119,7 +119,7 @@ fn rate(times: &[f64]) -> Result<f64, String> {
     }
     let each = (last - first) / (times.len() - 1) as f64;
     if !(each > 0.0 && each.is_finite()) {
-        return Err(format!("times go from {first} to {last} s; expected ascending ones"));
+        return Err(format!("times go from {first} to {last} s; expected ascending times"));
     }
     let off = |(k, &t): (usize, &f64)| t.is_nan() || (t - (first + k as f64 * each)).abs() > UNEVEN * each;
     if let Some((frame, t)) = times.iter().enumerate().find(|&(k, t)| off((k, t))) {

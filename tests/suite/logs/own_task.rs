@@ -73,7 +73,10 @@ fn a_log_holds_one_task_whose_name_can_be_shown() {
     };
     assert_eq!(read(["wait", "wait"]).expect("a log").len(), 2);
     let error = read(["wait", "run"]).expect_err("two tasks").to_string();
-    assert!(error.contains("record 1 has another behavior than record 0"), "{error}");
+    assert!(
+        error.contains("record 1 has a different behavior from record 0"),
+        "{error}"
+    );
     for name in ["\u{1b}[2J", "a\nb", &"long".repeat(51)] {
         let error = read([name, name]).expect_err(name).to_string();
         assert!(error.contains("`task` is not the name of a task"), "{error}");

@@ -49,7 +49,7 @@ fn what_is_wrong_is_said_with_place_and_remedy() {
             ),
             &[
                 "rooms/mine.xml:7:",
-                "file \"../toys/ball.xml\" lies outside of the folder",
+                "file \"../toys/ball.xml\" lies outside the document's folder",
             ],
         ),
         (
@@ -61,7 +61,7 @@ fn what_is_wrong_is_said_with_place_and_remedy() {
                 "rooms/mine.xml:12:",
                 "asset/texture",
                 "../wood.png",
-                "outside of the folder of the document",
+                "outside the document's folder",
             ],
         ),
         (

@@ -122,7 +122,7 @@ test("a recording has the same line, before and after its end", async () => {
     sums.push(await checksum(page));
   }
   assert.ok(await page.locator("#past").isDisabled(), "a recording that runs is not left");
-  await assert.rejects(seek(page, 20), /A recording runs/);
+  await assert.rejects(seek(page, 20), /A recording is running/);
   await tab(page, "Share");
   await page.getByRole("button", { name: "Stop" }).click();
   await page.getByRole("button", { name: "Replay", exact: true }).click();

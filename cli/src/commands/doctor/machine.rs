@@ -64,7 +64,7 @@ fn processor() -> String {
         .unwrap_or_else(|| format!("{ARCH}, whose name the system does not publish"))
 }
 
-/// Lists the vector instructions that the engine chooses by. They do not change its results.
+/// Lists the vector instructions by which the engine chooses its code. They do not change its results.
 fn instructions() -> String {
     #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
     {

@@ -15,9 +15,9 @@ const LONGEST: Duration = Duration::from_secs(10);
 
 /// The result of a self-check.
 pub struct Outcome {
-    /// Lines of the table that were compared.
+    /// Number of table lines that were compared.
     compared: usize,
-    /// Lines of the table about configurations that the program has.
+    /// Number of table lines for configurations that the program has.
     lines: usize,
     /// Steps of all episodes.
     steps: usize,
@@ -35,7 +35,7 @@ impl fmt::Display for Outcome {
             "passed: {compared} of {lines} checksums of {steps} steps are the tested ones ({seconds:.1} s)"
         )?;
         if compared < lines {
-            write!(f, "; ten seconds were over before the others")?;
+            write!(f, "; the time limit of ten seconds left out the others")?;
         }
         Ok(())
     }
@@ -47,7 +47,7 @@ struct Line {
     checksum: String,
 }
 
-/// Reads the lines about a configuration, by rising numbers of steps.
+/// Reads the lines about a configuration, in ascending order of steps.
 fn lines_of(name: &str) -> Result<Vec<Line>, Box<dyn Error>> {
     let mut lines = Vec::new();
     for line in TABLE.lines() {
@@ -63,7 +63,7 @@ fn lines_of(name: &str) -> Result<Vec<Line>, Box<dyn Error>> {
     Ok(lines)
 }
 
-/// Runs episodes of the three examples of BabyBench and compares their checksums. The table has another configuration, which is a file only.
+/// Runs episodes of the three examples of BabyBench and compares their checksums. The table also has a configuration that exists only as a file.
 pub fn run() -> Result<Outcome, Box<dyn Error>> {
     let started = Instant::now();
     let mut outcome = Outcome {
@@ -109,7 +109,7 @@ pub fn run() -> Result<Outcome, Box<dyn Error>> {
     Ok(outcome)
 }
 
-/// Makes random steps, and returns whether there was time for all.
+/// Takes random steps and returns whether there was time for all of them.
 fn walk(env: &mut Env, steps: usize, started: Instant) -> Result<bool, Box<dyn Error>> {
     let mut action = Vec::new();
     for _ in 0..steps {

@@ -11,9 +11,9 @@ use babybench::eval::TouchableGeoms;
 use babybench::mimo::embedded;
 use babybench::model::Model;
 
-/// Parts that the hand touches least are this far between no colour and the full one.
+/// Share of the full colour for the parts that the hand touches least.
 const FAINT: f32 = 0.3;
-/// Parts that are always listed; the others can be unfolded.
+/// Number of parts that are always listed; the others can be unfolded.
 const LISTED: usize = 10;
 /// Parts that can be touched, parts that cannot, the palm itself.
 const PLAIN: [f32; 3] = [0.87, 0.87, 0.89];
@@ -22,7 +22,7 @@ const PALM: [f32; 3] = [0.25, 0.28, 0.34];
 
 /// For each hand the geoms that it touched, with the share of episodes in which it did.
 type TouchedGeoms = [Vec<(usize, f64)>; 2];
-/// A geom, and for each hand the share of episodes in which it touched that.
+/// A geom, and for each hand the share of episodes in which it touched the geom.
 type TouchShare = (usize, [f64; 2]);
 
 /// Draws the section: MIMo with touched parts in colour, and a table of the parts.
@@ -108,7 +108,7 @@ fn dolls(run: &RunContents, model: &Model, touchables: &TouchableGeoms, touched:
     }
 }
 
-/// Returns the parts in reach of a hand, those touched most often first, and those that no hand has touched.
+/// Returns the parts in reach of a hand, the most often touched first, and those that no hand has touched.
 fn parts(model: &Model, touchables: &TouchableGeoms, touched: &TouchedGeoms) -> (Vec<TouchShare>, Vec<TouchShare>) {
     let share = |g: usize, hand: usize| {
         let found = touched[hand].iter().find(|(t, _)| *t == g);

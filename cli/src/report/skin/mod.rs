@@ -75,7 +75,7 @@ impl Picture {
 /// Sensors this much (m) below the visible surface are hidden.
 const HIDDEN: f64 = 0.003;
 
-/// A direction to look from, in the frame of the first body that feels. Up is z.
+/// A viewing direction, in the frame of the first body with skin. Up is z.
 struct ViewDirection {
     /// The axis from left to right in the picture.
     across: usize,
@@ -110,7 +110,7 @@ struct SensorDot {
     place: Vec3,
     spacing: f64,
     color: [f64; 3],
-    /// Largest component of its value over the largest of all sensors; 0 when nothing is felt.
+    /// Largest component of its value, relative to the largest of all sensors; 0 when nothing is felt.
     felt: f64,
 }
 
@@ -123,7 +123,7 @@ struct SkinSolid {
     color: [f64; 3],
 }
 
-/// The part of a picture that one direction is drawn into.
+/// The part of a picture into which one direction is drawn.
 struct Canvas<'a> {
     picture: &'a mut Picture,
     direction: &'a ViewDirection,

@@ -4,7 +4,7 @@ use babybench::math::*;
 use babybench::model::GeomType;
 
 /// Casts the ray from `o` in direction `d` (unit); returns the distance to the geom, m, and the outward unit normal
-/// there, all in the geom's frame. The ray must start outside. Planes are not met.
+/// there, all in the geom's frame. The ray must start outside. Planes are ignored.
 pub(super) fn trace(kind: GeomType, size: Vec3, o: Vec3, d: Vec3) -> Option<(f64, Vec3)> {
     match kind {
         GeomType::Plane | GeomType::HField | GeomType::Mesh => None,

@@ -13,7 +13,7 @@ use thiserror::Error;
 use crate::limits::Limits;
 use crate::text::quoted;
 
-/// Stands where a corner of a triangle has no normal or no texture coordinates.
+/// Index for a corner of a triangle without a normal or without texture coordinates.
 pub const NONE: u32 = u32::MAX;
 
 /// The format of a file with a mesh.
@@ -57,7 +57,7 @@ pub enum MeshError {
     /// The file is shorter or longer than its content.
     #[error("the file has {found} bytes where its header asks for {expected}")]
     Length {
-        /// Bytes that the header asks for.
+        /// Number of bytes according to the header.
         expected: u64,
         /// Bytes of the file.
         found: u64,
@@ -79,13 +79,13 @@ pub enum MeshError {
         /// Faces announced.
         faces: i32,
     },
-    /// A number of triangles that MuJoCo does not take.
+    /// A number of triangles that MuJoCo does not accept.
     #[error("the header announces {0} triangles; MuJoCo takes from 1 to 200000")]
     Triangles(u32),
     /// STL as text, which MuJoCo does not read.
-    #[error("the file is STL as text; MuJoCo reads binary files alone: convert it")]
+    #[error("the file is STL as text; MuJoCo reads only binary files: convert it")]
     TextStl,
-    /// A coordinate that is not finite or too large.
+    /// A coordinate is not finite or too large.
     #[error("vertex {0} has a coordinate that is not finite or above 2^30")]
     Coordinate(usize),
     /// The text is not UTF-8.
@@ -103,7 +103,7 @@ pub enum MeshError {
     #[error("line {0} has too few numbers")]
     Few(usize),
     /// Polygons have so many corners that cutting them into triangles takes too long.
-    #[error("line {0} and those before it have polygons of too many corners; cut them into triangles")]
+    #[error("the polygons up to line {0} have too many corners; cut them into triangles")]
     Polygons(usize),
     /// An index that names nothing.
     #[error("line {line}: \"{}\" is not an index of what stands above", quoted(.word))]
@@ -118,7 +118,7 @@ pub enum MeshError {
     Corner {
         /// Face, from 0.
         face: usize,
-        /// The kind of thing that is named.
+        /// The kind of item that is named.
         what: &'static str,
         /// The index, from 0.
         index: u32,
@@ -130,7 +130,7 @@ pub enum MeshError {
     TooMuch(usize),
 }
 
-/// A mesh as a file has it.
+/// A mesh as stored in a file.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Triangles {
     /// Vertices, m.
@@ -148,7 +148,7 @@ pub struct Triangles {
 }
 
 impl Triangles {
-    /// Reads a mesh from a file. `lefthanded` says whether it will be mirrored, so that triangles change their sense.
+    /// Reads a mesh from a file. `lefthanded` is whether it will be mirrored, which reverses the triangles' orientation.
     ///
     /// # Errors
     /// Bytes that are not a mesh, numbers that are not finite, indices of nothing, more elements than
@@ -163,7 +163,7 @@ impl Triangles {
         Ok(mesh)
     }
 
-    /// Returns only the triangles. Vertices at the same place are merged into the first of them, in their order.
+    /// Returns only the triangles. Vertices at the same place are merged into the first of them; their order is kept.
     #[must_use]
     pub fn united(self) -> Self {
         let Self { vert, mut face, .. } = self;

@@ -10,13 +10,13 @@ use thiserror::Error;
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum CouplingError {
-    /// The model was compiled without slots, or with other ones.
+    /// The model was compiled without slots, or with different ones.
     #[error("the model has no body {name:?}: add CouplingOptions::slots to its document, with the same options")]
     NoSlots {
         /// Name of the missing body.
         name: String,
     },
-    /// The world advances by no positive number of seconds.
+    /// The time step of the world is not positive.
     #[error("the world's time step is {dt} s: it must be finite and > 0")]
     TimeStep {
         /// Time step, s.
@@ -79,14 +79,14 @@ pub enum CouplingError {
     /// The document of a model does not compile.
     #[error(transparent)]
     Load(#[from] Box<LoadError>),
-    /// The document of a model does not take slots, or does not compile with them.
+    /// The document of a model does not accept slots, or does not compile with them.
     #[error(transparent)]
     Edit(#[from] Box<EditError>),
-    /// Bytes that are not a snapshot.
+    /// The bytes are not a snapshot.
     #[error("these bytes are not a snapshot of a coupling")]
     NotASnapshot,
-    /// A snapshot of a coupling with other slots.
-    #[error("the snapshot was taken with other slots: couple the same document with the same options")]
+    /// The snapshot was taken from a coupling with different slots.
+    #[error("the snapshot was taken with different slots: couple the same document with the same options")]
     OtherSlots,
     /// A step of the model failed.
     #[error(transparent)]

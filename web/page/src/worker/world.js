@@ -96,13 +96,13 @@ export class LiveWorld {
     this.twin?.step();
   }
 
-  /** Stops on the way to a moment, here and beside. */
+  /** Stops on the way to a moment, in this world and in the one beside it. */
   stay() {
     this.goal = null;
     this.twin?.stay();
   }
 
-  /** Clears the known future, here and beside. */
+  /** Clears the known future, in this world and in the one beside it. */
   forget() {
     this.goal = null;
     this.past.forget();
@@ -210,7 +210,7 @@ export class LiveWorld {
    */
   seek(target) {
     const { past } = this;
-    if (this.tape) throw new Error("A recording runs: end it to go back.");
+    if (this.tape) throw new Error("A recording is running: end it to go back.");
     this.clock.play(false);
     this.spring.hold(null);
     if (!past.known && past.changed) past.begin(() => ({ bytes: this.env.snapshot(), truncated: this.truncated }));
