@@ -8,7 +8,7 @@ import { signals } from "./signals.js";
 
 /** @param {import("../app.js").App} app */
 export function watch(app) {
-  return el("div", {}, eyes(app, "eyes", "What MIMo sees"), eyes(app, "second eyes", "What the second sees"), score(app), skin(app), signals(app));
+  return el("div", {}, eyes(app, "eyes", "What MIMo sees"), eyes(app, "second eyes", "What the second MIMo sees"), score(app), skin(app), signals(app));
 }
 
 /**
@@ -34,7 +34,10 @@ function eyes(app, event, title) {
     });
   });
   const section = card(title, el("div", { className: "eyes" }, ...sides.map((s) => s.figure)), note);
-  if (event !== "eyes") app.on("scene", () => (section.hidden = !app.second.scene));
+  if (event !== "eyes") {
+    section.hidden = true; // until a scene has a second MIMo
+    app.on("scene", () => (section.hidden = !app.second.scene));
+  }
   return section;
 }
 
