@@ -149,6 +149,7 @@ pub(super) fn conflict(config: &Config) -> Option<Conflict> {
     if matches!(config.behavior, Behavior::Mobile | Behavior::Play) {
         return own_conflict(config);
     }
+    // BabyBench's behaviors end here: only tasks exclude what follows
     of_task(config.behavior)?;
     if config.scene != Scene::Base {
         let reason = "a task has a scene of its own; leave `scene` out";

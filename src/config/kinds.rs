@@ -28,6 +28,7 @@ impl KeyValue {
         match self {
             Self::Bool(on) => on.to_string(),
             Self::Whole(number) => number.to_string(),
+            // `Debug` writes 2.0, where `Display` writes 2, which YAML reads as an integer
             Self::Number(number) => format!("{number:?}"),
             Self::Choice(name) => (*name).to_string(),
             Self::List(names) => format!("[{}]", names.join(", ")),

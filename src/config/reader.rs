@@ -61,6 +61,7 @@ impl ConfigReader {
         }
         let before = config.behavior;
         let positions = yaml::read(text, file_name, &mut config)?;
+        // for the same behavior, the base has these defaults already or its caller has changed them
         if config.behavior != before {
             // the defaults of some keys are those of the behavior, unless the text sets them
             config.take_defaults(|key| positions[key].is_some());

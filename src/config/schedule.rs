@@ -29,6 +29,7 @@ impl AgeSchedule {
     /// Creates a schedule from points of steps and months, in order; `None` if the first is not at step 0, the steps do not increase, an age
     /// is not finite or negative, or there are more than [`AgeSchedule::MAX_POINTS`].
     pub fn new(points: impl IntoIterator<Item = (u64, f64)>) -> Option<Self> {
+        // one more than allowed is enough to refuse a list of any length
         let points: Vec<_> = points.into_iter().take(Self::MAX_POINTS + 1).collect();
         let ordered = points.windows(2).all(|pair| pair[0].0 < pair[1].0);
         let starts = points.first().is_none_or(|first| first.0 == 0);
@@ -55,11 +56,13 @@ impl AgeSchedule {
         };
         let share = (steps - from) as f64 / (to - from) as f64;
         let age = first + (last - first) * share;
+        // the points themselves keep the ages that were written
         let age = if steps > from && grid > 0.0 {
             (age / grid).round() * grid
         } else {
             age
         };
+        // rounding may go beyond a point that is not on the grid
         Some(age.clamp(first.min(last), first.max(last)))
     }
 

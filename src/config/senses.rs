@@ -23,6 +23,7 @@ impl Delays {
 }
 
 fn rounded(steps: f64) -> usize {
+    // the cast saturates, so no delay overflows
     (steps + 0.5) as usize
 }
 

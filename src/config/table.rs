@@ -33,7 +33,7 @@ const OWN_PIXELS: KeyKind = KeyKind::NoneOrWhole {
     min: 1,
     max: MAX_SIZE as u64,
 };
-const FIELD: KeyKind = KeyKind::NoneOr { min: 1.0, max: 170.0 };
+const FIELD: KeyKind = KeyKind::NoneOr { min: 1.0, max: 170.0 }; // towards 180 the picture plane is infinite
 const EYES: KeyKind = whole_from_1_to(2);
 const SEED: KeyKind = KeyKind::Whole { min: 0, max: u64::MAX };
 const SCALE: KeyKind = KeyKind::ZeroOrAtLeast(0.01); // sensors grow with the inverse square: 170 million values at 0.01
@@ -54,7 +54,7 @@ const OWN_DELAY: KeyKind = KeyKind::NoneOr {
     max: 10_000.0,
 };
 const DEVIATION: KeyKind = KeyKind::Number { min: 0.0, max: 1000.0 };
-const ACUITY_AGE: KeyKind = KeyKind::NoneOr { min: 0.0, max: 36.0 };
+const ACUITY_AGE: KeyKind = KeyKind::NoneOr { min: 0.0, max: 36.0 }; // the table of acuity ends there
 const STRENGTH: KeyKind = KeyKind::Number { min: 0.0, max: 1000.0 };
 const OWN_STRENGTH: KeyKind = KeyKind::NoneOr { min: 0.0, max: 1000.0 };
 const RATE: KeyKind = KeyKind::NoneOr {
@@ -64,7 +64,7 @@ const RATE: KeyKind = KeyKind::NoneOr {
 const SHARE: KeyKind = KeyKind::Number { min: 0.0, max: 1.0 };
 const PAIN: KeyKind = KeyKind::Number { min: 0.0, max: 1e6 };
 const MOST_PAIN: KeyKind = KeyKind::NoneOr { min: 0.0, max: 1e6 };
-const COLOR: KeyKind = KeyKind::NoneOr { min: 0.0, max: 2.0 };
+const COLOR: KeyKind = KeyKind::NoneOr { min: 0.0, max: 2.0 }; // the noise keeps its exponent in this range
 const FACTOR: KeyKind = KeyKind::Number { min: 0.0, max: 10.0 };
 const OWN_FACTOR: KeyKind = KeyKind::NoneOr { min: 0.0, max: 10.0 };
 const REFLEX_DELAY: KeyKind = KeyKind::NoneOr { min: 0.0, max: 1000.0 };
@@ -270,6 +270,7 @@ config! {
             eyes as touch_eyes, "The eyes have touch sensors.";
         }
     }
+    // continued, because `config!` takes no keys after `@parts`
     "Touch" {
         touch_pooled: bool = false, Bool, "Touch pooled over each body is observed.";
     }
@@ -296,6 +297,7 @@ config! {
             eyes as act_eyes, "The eyes are actuated.";
         }
     }
+    // continued, as "Touch" is
     "Actuation" {
         act_others: bool = false, Bool, "The last numbers of an action drive actuators of other bodies, which are also observed." + "The observation has their controls and their joints.";
     }

@@ -143,6 +143,7 @@ impl<'t> YamlReader<'t> {
             });
         };
         self.refuse_second(index, seen, at)?;
+        // the key itself, too: a second `age` is refused even if the first one was a schedule
         seen[index] = Some(at);
         let (value, value_at) = self.value(&KEYS[index])?;
         let own = ages::of_value(index, &value);
@@ -241,6 +242,7 @@ impl<'t> YamlReader<'t> {
                     self.bare(anchor, tag.is_some(), at)?;
                     text.push_str(&scalar);
                     text.push(separator);
+                    // the text separates steps and ages by these characters
                     text.len() <= ages::MAX_TEXT && !scalar.contains([':', ','])
                 }
                 Event::MappingEnd => break,

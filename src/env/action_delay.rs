@@ -38,6 +38,7 @@ impl ActionDelay {
             deviation: config.noise.motor,
             color: config.noise.motor_color,
             colored: None,
+            // reserved here, because a step allocates nothing
             noisy: Vec::with_capacity(if config.noise.motor > 0.0 { space.len() } else { 0 }),
         }
     }
@@ -61,6 +62,7 @@ impl ActionDelay {
         self.noisy.clear();
         if let Some(exponent) = self.color {
             let len = action.len();
+            // one draw for an episode: the whole series follows from it, so a snapshot needs only its seed and step
             let colored = self
                 .colored
                 .get_or_insert_with(|| ColoredNoise::new(exponent, len, rng.word()));
@@ -93,6 +95,7 @@ impl ActionDelay {
 
     /// Fills the delay at the end of a reset.
     pub fn rest(&mut self) {
+        // under `compat: reference` the first action that passes fills the line, even if it is one of the reset
         if let (Some(line), Compat::Api) = (&mut self.line, self.compat) {
             line.fill(&self.rest);
         }
@@ -103,6 +106,7 @@ impl ActionDelay {
             line.save(out);
         }
         if self.color.is_some() {
+            // always of the same length, so that `load` finds it at the end
             let [seed, step] = self.colored.as_ref().map_or([0; 2], ColoredNoise::position);
             out.push(u8::from(self.colored.is_some()));
             out.extend([seed, step].into_iter().flat_map(u64::to_le_bytes));

@@ -280,6 +280,7 @@ impl<'a> ManualControl<'a> {
     pub fn set_probe(&mut self, probe: Option<EnvProbe>) {
         self.env
             .physics
+            // a shared engine also steps other environments, whose stages are not for this probe
             .own_engine()
             .set_probe(probe.clone().map(|probe| -> Probe {
                 Box::new(move |stage| {

@@ -138,6 +138,7 @@ fn draw_on_gpus(environments: &mut [&mut Env]) -> Result<(), EnvError> {
         draw_on(&batch.gpu, &batch.requests, batch.images)?;
     }
     for env in environments {
+        // also if the eyes did not look, because delays advance in every step
         env.senses.take_picture(&mut env.rng);
     }
     Ok(())

@@ -84,6 +84,7 @@ impl Env {
     pub(super) fn shrink_back(&mut self, before: Self) {
         let episode = before.episode;
         self.become_grown(before);
+        // `become_grown` counts the steps of this episode as earlier ones, as if it had ended
         self.episode = episode;
     }
 }

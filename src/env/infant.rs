@@ -104,6 +104,7 @@ impl Infant {
         }
         let mut blueprint = Blueprint::new(config)?;
         let steps = Coupling::steps(blueprint.model(), sets.dt)?;
+        // only a compiled scene has a timestep to compare with that of the world
         if steps != blueprint.config().frame_skip {
             let config = Config {
                 frame_skip: steps,

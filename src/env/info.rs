@@ -129,6 +129,7 @@ impl BehaviorInfo {
                 Some(touched as f64 / (2 * SCORED_PARTS) as f64)
             }
             Self::HandRegard { counts } => {
+                // counters that continue from episode to episode may exceed the steps of this one
                 let seen: f64 = counts.to_array().iter().map(|&c| c.min(steps) as f64).sum();
                 Some(seen / (4.0 * steps as f64))
             }

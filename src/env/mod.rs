@@ -292,6 +292,7 @@ impl Env {
     }
 
     fn sense(&mut self) -> Result<(), EnvError> {
+        // parts of a step by hand come here without the check in `step`
         self.physics.check_shape()?;
         let model = self.blueprint.model();
         // a closure rather than a buffer: the task writes straight into the observation

@@ -17,6 +17,7 @@ impl Blueprint {
             let (age, camera) = (age?, model.camera(name)?);
             let [_, pixels] = config.eye_sizes()[eye];
             let (fovy, cutoff) = (model.cam_fovy[camera], acuity_cutoff(age));
+            // a cycle needs two pixels
             let held = 0.5 * pixels as f64 / fovy;
             let needed = (2.0 * cutoff * fovy).ceil();
             let square = config.eye_sizes() == [[config.vision_resolution as usize; 2]; 2];

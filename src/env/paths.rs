@@ -100,6 +100,7 @@ impl Paths {
     /// Returns the index of the last time before a time, and the elapsed share of the interval to the next.
     fn moment(&self, time: f64) -> (usize, f64) {
         let last = self.times.len() - 1;
+        // a single pose lasts no time, and a remainder by 0 is NaN
         if last == 0 {
             return (0, 0.0);
         }

@@ -191,6 +191,7 @@ impl Physics {
         };
         match &mut self.storage {
             StateStorage::Working(scratch) => (source, scratch, Some(&mut self.last_call), &mut self.base),
+            // a whole state is never recomputed, so its calls need no record
             StateStorage::Whole | StateStorage::Split(_) => (source, &mut self.kept, None, &mut self.base),
         }
     }
@@ -220,6 +221,7 @@ impl Physics {
     /// scratch state is unspecified.
     pub fn begin(&mut self, work: ScratchUse) {
         match (&self.storage, work) {
+            // a program that has read the state may read it after every step, and recomputing costs a physics step each time
             (StateStorage::Split(read), ScratchUse::Step) if read.get().is_some() => self.keep_all(),
             (StateStorage::Split(_) | StateStorage::Whole, ScratchUse::Reset) if self.shares => self.share(),
             _ => {}
@@ -248,6 +250,7 @@ impl Physics {
         let mut state = self.engines.reader().new_state();
         state.copy_dynamic_from(dynamic);
         self.last_call.repeat(&self.engines, &mut state);
+        // again, because the call has advanced the state and a task may have moved it afterwards
         state.copy_dynamic_from(dynamic);
         state.into()
     }
@@ -314,6 +317,7 @@ impl Physics {
 
     fn keep_locks(&mut self, model: &Model, report: &LockReport) {
         let now = self.dynamic().params.clone();
+        // only the locks, because a reset undoes other changes of the parameters
         for e in report.changed.iter().filter_map(|&j| lock_of(model, j)) {
             self.base.eq_active[e] = now.eq_active[e];
             self.base.eq_offset[e] = now.eq_offset[e];

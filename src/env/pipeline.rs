@@ -56,6 +56,7 @@ impl Pipeline {
         if deviation > 0.0 {
             let noise = Noise::new(deviation);
             let magnitudes = matches!(like, Signal::Skin(values) if values.width() == 1);
+            // a normal force cannot be negative
             let noise = if magnitudes { noise.of_magnitudes() } else { noise };
             chain.stages.push(ConfiguredTransform::configured(Box::new(noise)));
         }
@@ -212,6 +213,7 @@ pub(super) fn optics(
 /// Appends a part to bytes, after its length.
 pub(super) fn append_part(out: &mut Vec<u8>, part: &mut Vec<u8>) {
     out.extend_from_slice(&(part.len() as u64).to_le_bytes());
+    // leaves `part` empty for the next one
     out.append(part);
 }
 

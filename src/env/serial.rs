@@ -110,6 +110,7 @@ impl Serialize for InfoWithDetails<'_> {
 #[serde(untagged)]
 enum LogValue {
     Flag(bool),
+    // before `Number`, because the first variant that fits wins
     Count(u64),
     Number(f64),
     Name(String),

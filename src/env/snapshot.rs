@@ -127,6 +127,7 @@ impl Env {
         bytes.extend_from_slice(&[0; 4]);
         let identity = self.blueprint.identity();
         bytes.extend_from_slice(&identity.fingerprint.to_le_bytes());
+        // the place of the checksum, which covers everything after it
         bytes.extend_from_slice(&[0; 8]);
         let whole = [
             self.physics.dynamic().step,
@@ -166,6 +167,7 @@ impl Env {
     #[doc(alias = "mj_setState")]
     pub fn restore(&mut self, snapshot: &Snapshot) -> Result<(), SnapshotError> {
         let (content, keys) = snapshot.content()?;
+        // before the fingerprints are compared, because they differ between ages
         let before = self.grow_for(snapshot, keys);
         let restored = self.restore_here(snapshot, content, keys);
         if let (Err(_), Some(before)) = (&restored, before) {
@@ -217,6 +219,7 @@ impl Env {
         }
         // everything is checked before anything is written, so that a damaged snapshot changes nothing
         let (behavior, memory) = self.parse(&r, counts)?;
+        // the last check, which takes back its own changes if the memory does not fit
         self.load_memory(memory)?;
 
         let mut memory = self.task_memory();
@@ -237,6 +240,7 @@ impl Env {
         self.task.inform(TaskEvent::Restored, &mut self.info);
         let reward = self.episode.reward;
         self.conclude();
+        // `conclude` judges as after a step, but right after a reset the reward is 0 and nothing has ended
         (self.episode.reward, self.episode.terminated) = (reward, self.episode.terminated && steps > 0);
         self.episode.ready = ready == 1;
         // the generator's position is stored as a count, which any version of it can restore

@@ -222,6 +222,7 @@ impl Actuator {
             "cylinder" => self.cylinder(e),
             "adhesion" => {
                 self.law.gainprm[0] = Adhesion::read(e).gain.unwrap_or(self.law.gainprm[0]);
+                // not by `decide`, because the dyntype of a default class stays
                 (self.law.gaintype, self.law.biastype) = (GainType::Fixed, BiasType::None);
                 self.control.limited = AutoBool::Yes;
                 if self.law.gainprm[0] < 0.0 {

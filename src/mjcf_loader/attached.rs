@@ -45,6 +45,7 @@ pub(super) trait Reference: Clone {
         let there =
             |((thing, name), found): (&(ElementKind, &mut String), &bool)| *found || known.has(*thing, name, "");
         let whole = match (some, Self::LOOSE) {
+            // a sensor such as a clock names nothing, so nothing that it needs can be missing
             (false, _) => names.is_empty() && Self::LOOSE,
             (true, true) => names.iter().zip(&found).all(there),
             (true, false) => !found.contains(&false),
@@ -251,6 +252,7 @@ fn measured(object: &mut Object) -> Vec<(ElementKind, &mut String)> {
         Object::Frame(of, within) => {
             let object = (framed(of.objtype), &mut of.objname);
             let reference = within.refname.iter_mut();
+            // a refname without a reftype is refused when sensors are compiled
             let kind = framed(within.reftype.unwrap_or(FrameObject::Body));
             std::iter::once(object)
                 .chain(reference.map(|name| (kind, name)))
@@ -280,6 +282,7 @@ fn measured(object: &mut Object) -> Vec<(ElementKind, &mut String)> {
                 Some(ObjType::Camera) => ElementKind::Camera,
                 Some(ObjType::Tendon) => ElementKind::Tendon,
                 Some(ObjType::Actuator) => ElementKind::Actuator,
+                // an objname without an objtype is refused when sensors are compiled
                 _ => ElementKind::Body,
             };
             user.objname.iter_mut().map(|name| (kind, name)).collect()
@@ -335,6 +338,7 @@ impl Sizes {
         ];
         given
             .into_iter()
+            // an attribute that is not given has no numbers, and takes its default later
             .find(|(_, found, wanted)| *found > 0 && found != wanted)
     }
 }

@@ -155,6 +155,7 @@ impl Draft {
     /// As [`super::load`]; an element at fault is named with its place in the text.
     pub fn compile(self, source: &dyn AssetSource) -> Result<Spec, LoadError> {
         let Self { tree, mut document, .. } = self;
+        // first, because `leave_out` also changes the flexes that come from this
         compile::expand_flexes(&tree, &mut document, source)?;
         compile::leave_out(&tree, &mut document)?;
         let (arrays, bodies) = compile::compile(&tree, &document, source)?;

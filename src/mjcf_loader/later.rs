@@ -120,6 +120,7 @@ pub(super) fn attribute(element: &str, has: impl Fn(&str) -> bool, name: &str, t
         ("light", "type", "directional") => return Some(LaterAttribute::As("directional", "true")),
         _ => {}
     }
+    // only sensors have noise, and every actuator has a gear or a ctrlrange
     let common = if has("noise") {
         SENSORS
     } else if has("gear") || has("ctrlrange") {
@@ -131,6 +132,7 @@ pub(super) fn attribute(element: &str, has: impl Fn(&str) -> bool, name: &str, t
     let own = own.map(|(_, attribute, same)| (*attribute, same));
     let mut all = own.chain(common.iter().map(|(attribute, same)| (*attribute, same)));
     let (_, same) = all.find(|(attribute, _)| *attribute == name)?;
+    // NaN is neither 0 nor finite, so other text is refused
     let number = |word: &str| word.parse().unwrap_or(f64::NAN);
     let changes_nothing = match same {
         NeutralValue::Words(words) => words.contains(&text),

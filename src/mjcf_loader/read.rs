@@ -111,6 +111,7 @@ impl<'t> Classes<'t> {
             }
             Some(_) => given,
         };
+        // a few bytes of text make another copy of all prototypes
         if self.by_name.len() > self.tree.limits.classes {
             return Err(self.error(
                 section,
@@ -120,6 +121,7 @@ impl<'t> Classes<'t> {
                 },
             ));
         }
+        // a second section at the top continues the main class
         let mut class = self.by_name.get(parent.unwrap_or(MAIN)).cloned().unwrap_or_default();
         for element in &section.children {
             let wrong = |what| self.error(element, ErrorKind::Invalid(what));
@@ -193,6 +195,7 @@ fn read_model(parts: &Sources, index: usize) -> Result<TypedDocument, LoadError>
     for section in sections("compiler") {
         section.children.iter().for_each(|e| document.lengthrange.apply(e));
     }
+    // before all elements, which copy the prototypes of their class when they are read
     for section in sections(DEFAULT) {
         classes.read(section, None)?;
     }
@@ -231,6 +234,7 @@ fn read_model(parts: &Sources, index: usize) -> Result<TypedDocument, LoadError>
             _ => return Err(tree.error(section.at, ErrorKind::Invalid(UNREAD))),
         }
     }
+    // before the world, whose <attach> elements copy from these models
     for model in sections("asset").flat_map(|section| &section.children) {
         if let Some(&index) = parts.named.get(&model.at).filter(|_| model.name == "model") {
             add_model(parts, index, model, &mut document)?;
@@ -250,6 +254,7 @@ fn add_model(parts: &Sources, index: usize, e: &Element, document: &mut TypedDoc
     let model = read_model(parts, index)?;
     let given = ModelAsset::read(e).name;
     let name = if given.is_empty() { model.model.clone() } else { given };
+    // copies within models count here, too: models within models multiply them
     document.copied.add(model.copied, e.at, parts.tree)?;
     let kind = "model";
     if document.models.contains_key(&name) {

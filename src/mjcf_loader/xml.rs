@@ -259,6 +259,7 @@ impl FileReader<'_> {
     fn model(&mut self, text: &str, path: &str, of: Option<usize>) -> Result<usize, LoadError> {
         let first = self.tree.nodes.len();
         directory(path).clone_into(&mut self.dir);
+        // a model may include what the document includes, too
         self.included = order::set([path.to_owned()]);
         let root = self.file(text, path, 0, 0)?;
         self.tree.models.push(ModelFile {
@@ -337,6 +338,7 @@ impl FileReader<'_> {
         self.tree.files.push(path.to_owned());
         let root = Parser::new(&mut self.tree, text, depth).run()?;
         let last = self.tree.nodes.len();
+        // includes in included files were replaced when those files were read
         for at in first..last {
             if self.tree.nodes[at]
                 .children

@@ -67,6 +67,7 @@ impl RunVector {
             ..options
         };
         let mut vector = VectorEnv::new(blueprint, n, options)?;
+        // after the environments, whose errors must leave the log of an earlier run alone
         let log = open_training_log(blueprint, resume)?;
         // each MIMo who grows goes on at the age that he has reached
         let each = log.totals().steps / n as u64;

@@ -324,6 +324,7 @@ impl Recorder {
         };
         rows.clear();
         self.spare = Some(rows);
+        // only now, so that parallel recorders do not wait for each other's archives
         let mut manifest = lock(&self.shared.manifest);
         let age = env.config().age;
         let description = EpisodeDescription {
@@ -332,6 +333,7 @@ impl Recorder {
             ..description
         };
         manifest.add(description, arrays);
+        // still under the lock, because an older description must not replace a newer one
         save(dir, &manifest)
     }
 }

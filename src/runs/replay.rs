@@ -83,6 +83,7 @@ pub fn replay_with_images(
     env.by_hand()
         .reset_to(&recording.qpos0, &recording.qvel0)
         .map_err(at(0))?;
+    // after the reset, which relaxes the muscles
     env.by_hand().set_activity(&recording.activity0).map_err(at(0))?;
     let muscles = recording.activity0.len();
     let mut out = Replay::begin(env, recording.len);
@@ -94,6 +95,7 @@ pub fn replay_with_images(
         if let Some(start) = recording.start_at(t) {
             begin_episode(env, start).map_err(at(t))?;
         } else if one_step && t > 0 {
+            // the first step of an episode has no row before it
             let s = env.state_mut();
             s.qpos.copy_from_slice(&recording.qpos[(t - 1) * nq..t * nq]);
             s.qvel.copy_from_slice(&recording.qvel[(t - 1) * nv..t * nv]);
@@ -136,6 +138,7 @@ fn begin_episode(env: &mut Env, start: &EpisodeStart) -> Result<(), EnvError> {
     if !start.desired_goal.is_empty() {
         env.by_hand().set_goal(&start.desired_goal)?;
     }
+    // after the reset, which leaves its own solution as the start of the solver
     if !start.warm.is_empty() {
         env.state_mut().qacc_warmstart.copy_from_slice(&start.warm);
     }

@@ -138,6 +138,7 @@ fn write_scene_file(scene: &SceneFile, save_dir: &Path) -> Result<PathBuf, Scene
         let path = save_dir.join(name);
         replace_file(&path, bytes).map_err(io(&path))?;
     }
+    // the document last, so that the files that it names exist
     let path = save_dir.join(SCENE);
     replace_file(&path, scene.xml.as_bytes()).map_err(io(&path))?;
     Ok(path)

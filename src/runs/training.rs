@@ -163,6 +163,7 @@ pub fn make_env(config: Config, training: bool) -> Result<RunEnv, RunError> {
 /// Files that cannot be written; when resuming, a log that is damaged or of another behavior, or a scene with other bodies.
 pub fn start_training(blueprint: &Blueprint, resume: bool) -> Result<RunEnv, RunError> {
     let mut env = blueprint.env()?;
+    // after the environment, whose errors must leave the log of an earlier run alone
     let log = open_training_log(blueprint, resume)?;
     // a MIMo who grows goes on at the age that he has reached
     env.set_earlier_steps(log.totals().steps);

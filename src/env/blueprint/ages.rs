@@ -30,6 +30,7 @@ impl AgeCache {
     /// Returns the blueprint of an age, which `make` creates if it does not exist.
     fn get(&self, age: Option<f64>, make: impl FnOnce() -> Result<Blueprint, EnvError>) -> Result<Blueprint, EnvError> {
         let slot = self.slot(age);
+        // the list is unlocked again, so other ages are found while this one compiles; a panic leaves `None` in the slot
         let mut made = slot.lock().unwrap_or_else(PoisonError::into_inner);
         let blueprint = match &*made {
             Some(blueprint) => blueprint.clone(),

@@ -36,6 +36,7 @@ pub fn make_skin(
     if !config.touch_grows {
         return Ok(layout(model)?);
     }
+    // placed on the original body and then moved, so that every age has the same number of sensors
     let mut original = config.clone();
     original.age = None;
     let original_model = task_model(&original, task, assets)?;
@@ -79,6 +80,7 @@ impl SettledScene {
             config,
             model,
             state: &mut state,
+            // a generator of its own, because all environments share the settled state
             rng: &mut NumpyRng::seed(config.seed),
             engine: EngineSource::Shared(engines),
             last_call: None,

@@ -43,6 +43,7 @@ impl Blueprint {
         if let Some(scenery) = shared.get() {
             return Ok(scenery.clone());
         }
+        // made outside the cell, because it may fail; if two threads make it, the first one wins
         let made = Arc::new(Scenery::new(&self.model, self.assets())?);
         Ok(shared.get_or_init(|| made).clone())
     }

@@ -62,6 +62,7 @@ impl Identity {
             keys += &format!("{MODEL}{name}: {:016x}\n", checksum(&bytes));
         }
         let changed = &keys[self.keys.len()..];
+        // with all changes undone it is that of the scene again
         let fingerprint = self.fingerprint
             ^ if changed.is_empty() {
                 0
@@ -122,6 +123,7 @@ fn fingerprint(model: &Model, config: &Config, keys: &str) -> u64 {
     ] {
         for name in names {
             bytes.extend_from_slice(name.as_bytes());
+            // separators, because the same letters divided differently are other names
             bytes.push(0);
         }
         bytes.push(1);
@@ -131,6 +133,7 @@ fn fingerprint(model: &Model, config: &Config, keys: &str) -> u64 {
         bytes.extend_from_slice(&v.to_le_bytes());
     }
     if matches!(config.scene, Scene::File(_)) || !config.scene_extra.is_empty() {
+        // the derived text has every field, including fields added later
         bytes.extend_from_slice(&checksum(format!("{model:?}").as_bytes()).to_le_bytes());
     }
     bytes.extend_from_slice(keys.as_bytes());

@@ -16,6 +16,7 @@ impl Env {
         }
         append_part(out, &mut part);
         self.senses.pipeline.save(out);
+        // missing parts leave no mark, because the fingerprint includes the configuration
         if let Some(reflexes) = &self.reflexes {
             reflexes.save(&mut part);
             append_part(out, &mut part);

@@ -187,6 +187,7 @@ impl Task for SelfBody {
     fn settle(&self, scene: &mut TaskScene<'_>) -> Result<(), EnvError> {
         set_angles(scene.model, SITTING, &mut scene.state.qpos, PURPOSE)?;
         scene.steps(1)?;
+        // again, because the step has moved the joints
         set_angles(scene.model, SITTING, &mut scene.state.qpos, PURPOSE)?;
         scene.state.qpos[self.base..self.base + 7].copy_from_slice(&BASE);
         for &(joint, angle) in SITTING {

@@ -85,6 +85,7 @@ fn transmission(
     } = &actuator.target;
     let find_joint = |attribute, name: &String| ids.joint.find(context.tree, at, attribute, name);
     let find_site = |attribute, name: &String| ids.site.find(context.tree, at, attribute, name);
+    // the tables allow one of these attributes, so their order does not matter
     if let Some(name) = joint {
         Ok((TrnType::Joint, find_joint("joint", name)?, None))
     } else if let Some(name) = jointinparent {

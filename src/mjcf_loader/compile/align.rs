@@ -15,6 +15,7 @@ pub(super) fn align(context: &Context, document: &TypedDocument, body: usize, id
         AutoBool::No => false,
         AutoBool::Auto => context.compiler(joint.at).alignfree,
     };
+    // bodies are listed depth first, so a child would be the next one
     let leaf = document.bodies.get(body + 1).is_none_or(|next| next.parent != body);
     if joint.kind != JointType::Free || !asked || !leaf {
         return;
@@ -26,6 +27,7 @@ pub(super) fn align(context: &Context, document: &TypedDocument, body: usize, id
     (arrays.body_pos[id], arrays.body_quat[id]) = (pos, quat);
     let pose = pos.into_iter().chain(quat);
     for coordinates in [&mut arrays.qpos0, &mut arrays.qpos_spring] {
+        // the free joint of this body is the last that was compiled
         let from = coordinates.len() - 7;
         coordinates.truncate(from);
         coordinates.extend(pose.clone());

@@ -31,6 +31,7 @@ pub(super) fn compile(
         let user = users.body.of(context, body.at, &body.user)?;
         arrays.body_user.push(user);
         arrays.body_gravcomp.push(body.gravcomp);
+        // the parent in the document counts, even if it is fused with the world
         if body.mocap && (id == 0 || body.parent != 0 || !body.joints.is_empty()) {
             return Err(context.invalid(body.at, "a mocap body must be a child of the world without joints"));
         }
@@ -74,6 +75,7 @@ pub(super) fn compile(
         for light in &body.lights {
             arrays.lights.push(compile_light(context, light, id, ids)?);
         }
+        // before the next body, because this changes the last entries of the arrays
         align(context, document, place.body, id, arrays);
     }
     scale_masses(context, arrays);
@@ -175,6 +177,7 @@ fn compile_geoms(
         if (lowest..=highest).contains(&(geom.group as f64)) {
             solids.push(solid);
         }
+        // also for geoms that are left out, so that leaving them out hides no error
         let user = user.of(context, geom.at, &geom.user)?;
         if !geom.left_out {
             arrays.geom_user.push(user);
@@ -218,6 +221,7 @@ fn inertial(context: &Context, body: &Body, own: usize, solids: &[Solid]) -> Res
     };
     match (&body.inertial, solids) {
         _ if own == 0 => {}
+        // a single geom keeps its axes; `merge` would sort them by moment
         (_, [single]) if from_geoms => solid = Solid { ..*single },
         (_, [_, _, ..]) if from_geoms => solid = merge(solids).map_err(invalid)?,
         (Some(given), _) => {

@@ -33,6 +33,7 @@ pub(super) fn compile_contacts(
         pairs.push((bodies, geoms, pair));
         context.within(pair.at, "contact pairs", context.tree.limits.pairs, pairs.len())?;
     }
+    // stable, so that pairs of the same bodies keep the order of the document
     order::sort_by(&mut pairs, |a, b| a.0.cmp(&b.0));
     for (_, geoms, pair) in pairs {
         arrays.pair_geom.push(geoms);

@@ -231,6 +231,7 @@ impl Context<'_> {
             }
             // MuJoCo takes a range that is the wrong way round for none
             AutoBool::Auto if self.compiler(at).autolimits => Ok(proper),
+            // zeros are the default, so no range was given
             AutoBool::Auto if range == [0.0; 2] => Ok(false),
             AutoBool::Auto => Err(self.invalid(
                 at,

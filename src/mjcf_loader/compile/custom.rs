@@ -78,6 +78,7 @@ pub(super) fn compile_keys(context: &Context, document: &TypedDocument, arrays: 
         context.tree.limits.key_numbers,
         least.max(document.keys.len()) + document.moved_keys.len(),
     );
+    // before keyframes are made, because `nkey` asks for many in a few bytes
     if most.saturating_mul(numbers) > limit {
         let at = document.keys.last().map_or(0, |key| key.at);
         let what = "numbers in keyframes";
@@ -138,6 +139,7 @@ fn moved_key(
         let places = to.iter_mut().skip(at);
         places.zip(values).for_each(|(to, value)| *to = *value);
     };
+    // places in these lists are ids, because fused bodies have no joints and are not mocap bodies
     let joints = document.bodies.iter().flat_map(|body| &body.joints);
     for (id, joint) in joints.enumerate() {
         if let Some([qpos, qvel]) = joint.states.get(&key.name) {

@@ -71,6 +71,7 @@ fn named(document: &TypedDocument) -> BTreeSet<String> {
     let sensed = document.sensors.iter().filter_map(|sensor| match &sensor.object {
         Object::Frame(of, _) if of.objtype == FrameObject::Geom => Some(&of.objname),
         Object::User(of) if of.objtype == Some(ObjType::Geom) => of.objname.as_ref(),
+        // MuJoCo does not look at the second geom, which `check_references` deals with
         Object::Between(between) => between.geom1.as_ref(),
         _ => None,
     });
@@ -102,6 +103,7 @@ fn check_references(tree: &Tree, document: &TypedDocument) -> Result<(), LoadErr
 
 /// Drops meshes without a geom.
 pub(super) fn drop_meshes(arrays: &mut Arrays) {
+    // the ids of height fields count in another list
     let of_mesh = |kind: GeomType, id: Option<usize>| id.filter(|_| kind != GeomType::HField);
     let geoms = arrays.geom_type.iter().zip(&arrays.geom_dataid);
     let used = order::set(geoms.filter_map(|(&kind, &id)| of_mesh(kind, id)));

@@ -42,6 +42,7 @@ impl FusedBody {
             return Ok(whole);
         }
         (own.pos, own.quat) = self.seen(own.pos, own.quat);
+        // one body after the other, as in MuJoCo: merging all at once would round differently
         merge(&[whole, own])
     }
 
@@ -65,6 +66,7 @@ pub(super) fn places(context: &Context, document: &TypedDocument) -> Result<Vec<
         if let Some(carrier) = among.map(|k| &places[parent].fused[k]) {
             (pos, quat) = carrier.seen(pos, quat);
         }
+        // the world has no parent, and programs move mocap bodies
         if fuses && at > 0 && !body.mocap && body.joints.is_empty() {
             let fused = &mut places[parent].fused;
             ends.push((parent, Some(fused.len())));
@@ -100,5 +102,6 @@ fn fuses(d: &TypedDocument) -> bool {
         .bodies
         .iter()
         .all(|body| body.cameras.is_empty() && body.lights.is_empty());
+    // fusing concerns the whole tree, so settings of attached models do not count
     d.compilers[0].fusestatic && blind && named.iter().all(|&count| count == 0)
 }

@@ -72,6 +72,7 @@ pub(super) fn compile_geom(
     let hfield = hfield_of(context, geom, ids)?;
     let mesh = place_mesh(context, geom, ids, (&mut pos, &mut quat, &mut size), arrays)?;
     let (pos, quat) = context.placed(geom.within, pos, quat);
+    // after `place_mesh`, which sets the sizes of meshes and fitted shapes
     check_size(context, geom.at, geom.kind, &size)?;
     if !matches!(geom.condim, 1 | 3 | 4 | 6) {
         return Err(context.invalid(geom.at, "condim must be 1, 3, 4 or 6"));

@@ -102,6 +102,7 @@ fn compile_joint(
         ));
     }
     let turns = matches!(joint.kind, JointType::Hinge | JointType::Ball) && context.compiler(joint.at).degree;
+    // MuJoCo converts the angles of orientations in another order, with another last bit
     let angle = |value: f64| if turns { value * (PI / 180.0) } else { value };
     let JointFrame { pos, axis, limited } =
         JointFrame::of(context, joint, body, [body_id, arrays.body_parentid[body_id]])?;

@@ -79,7 +79,9 @@ pub(super) fn compile(
     mesh::compile_meshes(&context, document, &ids, source, &mut arrays)?;
     arrays.hfields = hfield::compile_hfields(&context, document, source)?;
     let bodies = body::compile(&context, document, &ids, &mut arrays)?;
+    // after the bodies, because aligning a free body moves its frames
     same_frames(&mut arrays);
+    // after the bodies, because geoms that are left out still weigh by their meshes
     if context.settings().discardvisual {
         discard::drop_meshes(&mut arrays);
     }
@@ -94,6 +96,7 @@ pub(super) fn compile(
         tendon::compile_tendon(&context, tendon, &user, &ids, &mut arrays)?;
     }
     actuator::compile_actuators(&context, document, &ids, &mut arrays)?;
+    // after joints and tendons: a sensor of a limit is an error if they have none
     sensor::compile_sensors(&context, document, &ids, &mut arrays)?;
     arrays.skins = skin::compile_skins(&context, document, &ids, source)?;
     custom::compile_custom(&context, document, &ids, &mut arrays)?;
@@ -103,6 +106,7 @@ pub(super) fn compile(
 
 /// Finds frames that are the same as a body's own or its inertial frame.
 fn same_frames(arrays: &mut Arrays) {
+    // equals no pose, so inertial frames are compared with the frame of the body alone
     let none = ([f64::INFINITY; 3], [f64::INFINITY; 4]);
     let bodies = arrays.body_ipos.iter().zip(&arrays.body_iquat);
     arrays.body_sameframe = bodies.map(|(&p, &q)| SameFrame::of(p, q, none.0, none.1)).collect();

@@ -57,6 +57,7 @@ pub(super) fn inertia(kind: GeomType, size: &Vec3, mass: f64) -> Vec3 {
 
 /// Returns the difference of two ellipsoids, as MuJoCo approximates the shell.
 fn ellipsoid([a, b, c]: Vec3, mass: f64) -> Vec3 {
+    // MuJoCo's thickness of the shell, m
     let grown = [a, b, c].map(|axis| axis + 1e-6);
     let volume = |[a, b, c]: Vec3| 4.0 * PI * a * b * c / 3.0;
     let (inner, outer) = (volume([a, b, c]), volume(grown));

@@ -203,6 +203,7 @@ fn texture_name(context: &Context, texture: &surface::Texture) -> Result<String,
     let stem = file.map(|file| file.rsplit('/').next().unwrap_or(file));
     let name = stem.map(|stem| stem.rsplit_once('.').map_or(stem, |(name, _)| name));
     match name.unwrap_or_default() {
+        // nothing refers to a skybox, so it needs no name
         "" if texture.kind != TextureType::Skybox => {
             Err(context.error(texture.at, ErrorKind::MissingAttribute("name")))
         }
@@ -220,6 +221,7 @@ pub(super) fn compile_material(
     if material.two_ways {
         return Err(context.invalid(material.at, "give the attribute texture or layers, not both"));
     }
+    // textures of layers that are not drawn must exist, too
     for layer in &material.layers {
         ids.texture.find(context.tree, layer.at, "texture", &layer.texture)?;
     }

@@ -134,6 +134,7 @@ impl Document {
             self.nodes[new].put("childclass", naming.apply(class));
         }
         self.take_assets(from, naming, classes, &names)?;
+        // `check_absent` must not take what this loop copies for elements of this document
         let before = self.clone();
         for (kind, section) in REFERRING {
             for id in from.all(kind) {
@@ -303,6 +304,7 @@ impl Document {
                 let named = *name == "name" && !node.in_class || class_name;
                 let renamed = match referred(node, name) {
                     _ if text.is_empty() => None,
+                    // the world has the same name in every document
                     Some(Kind::Body) if text == "world" => None,
                     Some(_) => Some(naming.apply(text)),
                     None => named.then(|| naming.apply(text)),

@@ -92,6 +92,7 @@ impl Document {
             let mut own = self.nodes[class].children.iter();
             let at = match own.find(|&&at| std::ptr::eq(self.nodes[at].rule, rule)) {
                 Some(&at) => at,
+                // first in the class, so that its elements for single kinds of actuators take precedence
                 None => self.push(class, rule, if actuator { 0 } else { usize::MAX }),
             };
             let all: Vec<&'static str> = if actuator {

@@ -61,6 +61,7 @@ impl Document {
         let mut open = vec![at];
         while let Some(at) = open.pop() {
             let node = &mut self.nodes[at];
+            // marked instead of deleted, because ids are indices into this list
             node.removed = true;
             open.extend(&node.children);
             let name = self.nodes[at].attribute("name").unwrap_or_default().to_owned();

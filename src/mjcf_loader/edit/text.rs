@@ -40,6 +40,7 @@ impl Document {
         }
         let checked = schema::check(&tree, root, &MUJOCO)?;
         let mut document = Self::empty(path, limits);
+        // without the world of an empty document, because the text may have one or several
         document.nodes.truncate(1);
         document.nodes[ROOT].children.clear();
         // elements still to be read, with their place in the document

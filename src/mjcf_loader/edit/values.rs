@@ -24,6 +24,7 @@ impl Document {
         let several = matches!(attr.kind, crate::attribute::AttributeKind::Reals { min, max, .. } if min < max);
         match node.attribute(name) {
             // numbers that are not given keep the values of the class
+            // except for springlength: a single one stands for both lengths
             Some(text) if several && name != "springlength" => {
                 let given = text.split_ascii_whitespace().count();
                 let rest = self.value_of_class(id, name)?;

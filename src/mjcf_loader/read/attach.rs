@@ -105,6 +105,7 @@ impl AttachedPart<'_> {
     fn admit<T: Reference>(&self, element: &mut T, absent: &mut Vec<MissingReference>) -> bool {
         let at = element.at();
         let renamed = !self.prefix.is_empty();
+        // with an empty prefix the name does not change, so MuJoCo finds it
         if let Some((thing, name)) = element.left().filter(|_| renamed) {
             absent.push(MissingReference { at, thing, name });
             return false;
@@ -159,6 +160,7 @@ fn take(
     tree: &Tree,
     document: &mut TypedDocument,
 ) -> Result<(), LoadError> {
+    // all of the model, because each <attach> copies its assets and examines all its other elements
     document.copied.add(CopyCount::of(model), attach.at, tree)?;
     // before anything is copied, so that the copies take their part of each keyframe with them
     let keys = say_keys(model, (&attach.prefix, ""), tree)?;
@@ -263,6 +265,7 @@ fn take_body(taking: &AttachedPart, body: &mut Body, moved: impl Fn(Option<usize
     }
     for camera in &mut body.cameras {
         taking.rename(&mut camera.name);
+        // a target that is not copied becomes an unknown name, which the compiler reports
         camera.target.iter_mut().for_each(|target| taking.rename(target));
         camera.within = moved(camera.within);
     }
@@ -346,6 +349,7 @@ fn take_referring(taking: &mut AttachedPart, from: &mut TypedDocument, document:
         .iter_mut()
         .zip(&actuators)
         .filter(|(_, place)| place.is_some());
+    // as with joints, only the first copy gets the values in keyframes
     taken.for_each(|(actuator, _)| actuator.forget());
 }
 

@@ -67,6 +67,7 @@ pub(super) fn cable(e: &Element, spot: Insertion, tree: &Tree, document: &mut Ty
     if document.bodies.len() + links.len() > limit {
         return Err(tree.error(e.at, ErrorKind::TooMuch { what, limit })); // each is a few bytes of text
     }
+    // a prototype that is not written has no place, and errors need one
     (like.geom.at, like.site.at, like.joint.at) = (e.at, e.at, e.at);
     let prefix = &composite.prefix;
     // MuJoCo adds this text, and programs that read `text_data` find their own at the same index
@@ -81,6 +82,7 @@ pub(super) fn cable(e: &Element, spot: Insertion, tree: &Tree, document: &mut Ty
     };
     // only cables of boxes have a skin, as in MuJoCo
     if like.geom.kind == GeomType::Box {
+        // checked before the skin is made, because `subgrid` may ask for billions of vertices
         let taken = document.skins.iter().map(Skin::elements).sum();
         let left = tree.limits.mesh_elements.saturating_sub(taken);
         let skin = skin(e, names, like.geom.size, left).map_err(invalid)?;
@@ -162,6 +164,7 @@ fn piece(composite: &Composite, like: &Prototypes, link: &Link, index: usize, na
     body.frame.orientation = Orientation::Quat(link.quat);
     let mut geom = like.geom.clone();
     geom.name = format!("{}G{index}", names.prefix);
+    // `fromto` would put the length of a box along z and make its other two sides equal
     if geom.kind == GeomType::Box {
         geom.frame.pos = [link.length / 2.0, 0.0, 0.0];
         geom.size[0] = link.length / 2.0;

@@ -24,6 +24,7 @@ pub(super) fn content(
         match e.name {
             "body" => {
                 let body = child(e, spot, inner, classes, document)?;
+                // the frames around a body place the body, and not its contents once more
                 let within = None;
                 content(e, Insertion { body, within }, inner, classes, document)?;
             }
@@ -33,6 +34,7 @@ pub(super) fn content(
             }
             "replicate" => {
                 let original = replicate::open(e, spot, inner, classes, document)?;
+                // counted before and after the content, because a flexcomp may be deep inside
                 let flexes = document.flexcomps.len();
                 content(e, original.spot(), inner, classes, document)?;
                 flex::check_copied(e, document.flexcomps.len() > flexes, classes)?;
@@ -109,6 +111,7 @@ fn hang(e: &Element, spot: Insertion, around: &str, classes: &Classes, bodies: &
         "inertial" | "freejoint" | "joint" if id == 0 => {
             return Err(classes.error(e, ErrorKind::Invalid("the world has no joints and no inertia")));
         }
+        // the rules allow one in a body and another in a frame of that body
         "inertial" if body.inertial.is_some() => {
             return Err(classes.error(e, ErrorKind::RepeatedElement("inertial")));
         }

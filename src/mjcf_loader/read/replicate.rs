@@ -85,6 +85,7 @@ impl ReplicateContent {
         let at = self.replicate.at;
         let count = usize::try_from(self.replicate.count).unwrap_or(0);
         let joints = &document.bodies[self.body].joints;
+        // `hang` saw the body of the original and not the world, into which the copies go
         if let Some(joint) = joints.first().filter(|_| spot.body == 0 && count > 0) {
             let what = "the world has no joints and no inertia";
             return Err(tree.error(joint.at, ErrorKind::Invalid(what)));
@@ -93,6 +94,7 @@ impl ReplicateContent {
         let ends = (document.bodies.len(), document.frames.len());
         // nested <replicate>s multiply: a few of them in a row ask for billions of elements
         let each = amount(&document.bodies[self.body..]) + ends.1 - self.frame;
+        // with the names of the original, by which `forget_lost` tells lost references from those that never existed
         let mut names = NameTable::of(document);
         look(document, at, tree)?;
         // suffixes are padded with zeros to the digits of the count, as MuJoCo pads them
@@ -111,9 +113,11 @@ impl ReplicateContent {
             previous = Some(frame);
             // copies of elements that refer to the original look for its names with this suffix
             names.add(document.bodies[body..].iter().flat_map(hanging));
+            // elements directly in the <replicate> are now in this body
             names.add(hanging(&document.bodies[spot.body]));
             look(document, at, tree)?;
             copy_referring(&suffix, &mut names, document);
+            // the next copy distributes the keyframes again, and they must have the new length by then
             resize_keys(document);
         }
         // MuJoCo compares with a copy of the whole model, and loses the actuators' values in keyframes when it makes the copy
@@ -166,6 +170,7 @@ impl ReplicateContent {
         for at in self.body + 1..ends.0 {
             let original = &mut document.bodies[at];
             let mut body = original.clone();
+            // values of this keyframe belong to this copy; the next copy gets those of its own
             original.states.clear();
             original.joints.iter_mut().for_each(|joint| joint.states.clear());
             rename(&mut body.name, suffix);
@@ -185,12 +190,14 @@ impl ReplicateContent {
         document.bodies.drain(self.body..ends.0);
         document.frames.drain(self.frame..ends.1);
         let moved = |within: Option<usize>| within.map(|at| if at >= ends.1 { at - frames } else { at });
+        // earlier frames never refer to later ones
         for frame in &mut document.frames[self.frame..] {
             frame.within = moved(frame.within);
             if let Some(copied) = &mut frame.copy {
                 copied.previous = moved(copied.previous);
             }
         }
+        // this body comes before the original, but the frames of its copied elements come after it
         readdress_hung(&mut document.bodies[spot.body], "", &moved);
         for body in &mut document.bodies[self.body..] {
             body.within = moved(body.within);
@@ -343,6 +350,7 @@ fn forget_names<T: Reference>(thing: ElementKind, before: &[String], mut lost: V
 
 /// Removes the elements of a list that refer to names that are gone, and returns them.
 fn keep<T: Reference>(list: &mut Vec<T>, before: &NameTable, now: &NameTable) -> Vec<T> {
+    // with an empty suffix `readdress` asks and changes nothing
     let lost = |element: &mut T| element.readdress("", before) && !element.readdress("", now);
     list.extract_if(.., lost).collect()
 }

@@ -80,6 +80,7 @@ impl<'t> Parser<'t> {
     /// Returns the root of the file.
     pub fn run(mut self) -> Result<usize, LoadError> {
         let mut reader = Reader::from_str(self.cursor.text);
+        // as in MuJoCo, a bare ampersand is not an error
         reader.config_mut().allow_dangling_amp = true;
         loop {
             self.cursor.advance(reader.buffer_position());
@@ -160,6 +161,7 @@ impl<'t> Parser<'t> {
             parent: self.open.last().copied(),
             filled: false,
         });
+        // only now, because the error gets its place from the node
         self.tree.nodes[at].attributes = found.map_err(|kind| self.tree.error(at, kind))?;
         match self.open.last() {
             Some(&parent) => self.tree.nodes[parent].children.push(at),

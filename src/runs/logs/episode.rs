@@ -62,6 +62,7 @@ impl EvaluationLog {
         #[cfg(feature = "npz")]
         self.write_npz(&path.with_extension("npz"))
             .map_err(|e| LogError::Write(e.to_string()))?;
+        // last, because programs find an episode by its pickle, and the other files are then complete
         write_pickle(
             path.clone(),
             &Value::dict([("qpos", Value::list(rows)), ("info", info)]),

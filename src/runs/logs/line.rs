@@ -38,6 +38,7 @@ impl<'n> LineFormatter<'n> {
                 InfoValue::Geoms(geoms) => list(out, geoms, |out, geom| number(out, geom as u64)),
                 other => {
                     json::line(out, &other)?;
+                    // `json::line` ends with a line break
                     out.pop();
                 }
             }

@@ -145,6 +145,7 @@ impl JsonLines {
         maker.line(&mut end, last)?;
         // the line break of the line before belongs to the end
         let end = if resumed.records == 1 { &end[1..] } else { &end[..] };
+        // the ends and the number of lines, because comparing all lines would mean formatting all records
         let same = begins(&first, SeekFrom::Start(0))? && begins(end, SeekFrom::End(-(end.len() as i64)))?;
         file.seek(SeekFrom::Start(0))?;
         Ok((same && breaks(&mut file)? == resumed.records).then(|| KnownFile::of(resumed.records, &meta)))
@@ -160,6 +161,7 @@ impl JsonLines {
         if more.len() == 0 {
             return Ok(());
         }
+        // a new file: a process killed while it appends would leave half a line
         replace_file_with(path, |file| {
             // the system copies this itself if it can
             let copied = io::copy(&mut files::open(path)?, file)?;
@@ -188,6 +190,7 @@ impl JsonLines {
                 Err(e) => Err(io::Error::other(e.to_string())),
             }
         });
+        // first, because the error of the file only repeats it
         read?;
         written.map_err(|source| {
             let path = path.to_path_buf();

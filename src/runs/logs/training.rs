@@ -155,6 +155,7 @@ impl TrainingLog {
 
     /// Returns a log without records that has capacity for those of a file.
     fn before(config: &Config, path: &Path) -> Result<Self, LogError> {
+        // before the file is read, so that no other process changes it afterwards
         let owner = own_folder(config.save_dir.as_ref())?;
         let bytes = std::fs::metadata(path).map_or(0, |meta| meta.len().min(Limits::DEFAULT.pickle_bytes as u64));
         Ok(Self::empty(config, owner, bytes as usize))

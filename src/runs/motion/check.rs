@@ -6,7 +6,7 @@ use crate::math::{MINVAL, quat_normalize};
 use crate::text::quoted;
 
 /// The largest angle accepted in rad: two turns.
-const LARGEST: f64 = 4.0 * std::f64::consts::PI;
+const LARGEST: f64 = 4.0 * std::f64::consts::PI; // larger numbers are most likely degrees
 /// The largest distance of the root from the origin, m.
 const FAR: f64 = 1000.0;
 /// The highest rate, Hz. A thousand frames per physics step would be a mistake.
@@ -38,6 +38,7 @@ impl Motion {
                 return Err(number("root_pos", value, "expected a position in m, within 1000 m"));
             }
             let squares: f64 = quat.iter().map(|x| x * x).sum();
+            // negated, so that NaN is refused, too
             if !(squares > MINVAL && squares < 1e6) {
                 return Err(number("root_quat", quat[0], "expected a unit quaternion, w first"));
             }

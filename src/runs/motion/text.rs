@@ -58,6 +58,7 @@ pub(super) fn parse(path: &Path, bytes: &[u8], degrees: bool, limits: &Limits) -
                 format!("{found} cells, where the first line has {expected} names"),
             ));
         }
+        // row by row, so that a long table is refused before it fills the memory
         if angles.len() + joints + 7 > limits.motion_numbers {
             let most = limits.motion_numbers;
             return Err(fault(at, format!("more numbers than the limit motion_numbers, {most}")));

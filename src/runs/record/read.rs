@@ -59,6 +59,7 @@ impl Record {
             )));
         }
         // names of files are untrusted and must not lead out of the folder
+        // and on Windows a colon names a drive or a stream
         let plain = |file: &str| !file.is_empty() && !file.contains(['/', '\\', ':']) && file != "..";
         if let Some(episode) = manifest.episodes.iter().find(|episode| !plain(&episode.file)) {
             return Err(damaged(format!(
@@ -160,6 +161,7 @@ impl Record {
             source,
         };
         let start = Snapshot::from_bytes(npz.get_u8("snapshot")?.data).map_err(snapshot)?;
+        // before the snapshot, which fits only an environment with this body and these numbers
         self.become_of(episode, &npz, env)?;
         env.restore(&start).map_err(snapshot)?;
         let (mut action, mut first_difference) = (Vec::with_capacity(na), None);

@@ -370,6 +370,7 @@ pub(super) fn checksum(env: &Env) -> i64 {
     for (_, values) in env.observation().entries() {
         match values {
             Values::F64(values) => values.iter().for_each(|v| sum.add(v.to_bits())),
+            // with the index, because zeros are skipped
             Values::F32(values) => nonzero(values, |k, v| sum.add((k as u64) << 32 | u64::from(v.to_bits()))),
             Values::I32(values) => values.iter().for_each(|&v| sum.add(v as u64)),
             Values::U8(values) => {

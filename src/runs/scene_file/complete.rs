@@ -62,6 +62,7 @@ impl CopiedFiles<'_> {
     /// Returns the new value of an attribute, if it changes.
     fn replaced(&mut self, at: usize, attribute: &str, value: &str) -> Result<Option<String>, SceneFileError> {
         let kept = match (self.tree.nodes[at].name.as_str(), attribute) {
+            // files get new paths, to which these settings must not apply
             ("compiler", "texturedir" | "meshdir" | "assetdir") => return Ok(Some(String::new())),
             ("compiler", "strippath") => return Ok(Some("false".to_string())),
             (_, _) if value.is_empty() => return Ok(None),

@@ -59,6 +59,7 @@ pub(crate) fn expand_flexes(
     let mut old = old.into_iter();
     let mut left = tree.limits.mesh_elements;
     let mut comps = comps.iter().peekable();
+    // the bodies of a flexcomp follow those that were read before it, also if it comes after all of them
     for k in 0..=count {
         while let Some(comp) = comps.next_if(|comp| comp.place == k) {
             let made = Vertices::of(&context, comp, &names[comp.body], source, &mut left)?;
@@ -311,6 +312,7 @@ fn assemble(
             .collect();
         elements.iter_mut().for_each(|v| *v = numbers[*v]);
     }
+    // over all points: the shares of pinned and unused ones are lost
     let mass = comp.mass / points.len() as f64;
     let inertia = mass * (2.0 * comp.inertiabox * comp.inertiabox) / 3.0;
     let (mut bodies, mut names) = (Vec::new(), Vec::new());

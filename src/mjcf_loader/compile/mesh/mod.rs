@@ -87,6 +87,7 @@ fn compile(
     if mesh.inertia == MeshInertia::Exact {
         normals::check_orientation(&vert, &face)?;
     }
+    // before `transform`, as in MuJoCo: Qhull could order scaled vertices differently
     let mut hull = (touches || face.is_empty() || mesh.inertia == MeshInertia::Convex)
         .then(|| hull(&vert, usize::try_from(mesh.maxhullvert).ok()))
         .transpose()?;
