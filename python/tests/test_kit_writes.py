@@ -252,7 +252,7 @@ def test_the_viewer_shows_an_environment(env: Any, capsys: pytest.CaptureFixture
         with pytest.raises(AttributeError, match="cam: the page of this viewer"):
             _ = viewer.cam
     assert not viewer.is_running()
-    with pytest.raises(NotImplementedError, match=r"env\.model and env\.data"):
+    with pytest.raises(TypeError, match=r"env\.model and env\.data of one environment, not NoneType"):
         mujoco.viewer.launch_passive(None, None)
     with pytest.raises(NotImplementedError, match="key_callback"):
         mujoco.viewer.launch_passive(env.model, env.data, key_callback=print)

@@ -493,8 +493,6 @@ def test_gymnasium_s_renderer_says_what_it_has_not() -> None:
     rgb, depth = renderer.render("rgbd_tuple")
     assert rgb.shape == (24, 32, 3)
     assert 0 < depth.min() < depth.max() <= 1
-    with pytest.raises(NotImplementedError, match="there is no window here"):
-        renderer.render("human")
     with pytest.raises(AttributeError, match="Unexpected mode"):
         renderer.render("other")
     with pytest.raises(NotImplementedError, match="visual_options"):

@@ -1,5 +1,5 @@
-"""``mujoco.viewer`` for environments: a page on this machine that shows ``env.data`` while a program steps it."""
+"""``mujoco.viewer``: a page on this machine that shows a state while a program steps it, of an environment or of any model."""
 
-from babybench_core.mujoco.viewer import Handle, launch, launch_passive
+from babybench_core.mujoco.viewer import Handle, Window, launch, launch_from_path, launch_passive
 
-__all__ = ["Handle", "launch", "launch_passive"]
+__all__ = ["Handle", "Window", "launch", "launch_from_path", "launch_passive"]

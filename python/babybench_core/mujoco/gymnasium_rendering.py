@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from typing import Any, NoReturn
 
 import numpy as np
@@ -12,6 +13,7 @@ from .data import MjData
 from .enums import mjtCamera
 from .model import MjModel
 from .renderer import MjvCamera, draw
+from .window import Window
 
 __all__ = ["MujocoRenderer", "OffScreenViewer"]
 
@@ -65,7 +67,7 @@ class OffScreenViewer:
 
 
 class MujocoRenderer:
-    """Draws the environments of Gymnasium that MuJoCo runs, with its arguments and results; there is no window."""
+    """Draws the environments of Gymnasium that MuJoCo runs, with its arguments and results; its window is a page."""
 
     def __init__(
         self,
@@ -84,6 +86,8 @@ class MujocoRenderer:
             raise NotImplementedError("visual_options are not supported: pictures show what MuJoCo shows by default")
         self.model, self.data = model, data
         self.viewer: OffScreenViewer | None = None
+        self._window: Window | None = None
+        self._shown = (0.0, 0.0)
         self.default_cam_config = default_cam_config
         self.width, self.height, self.max_geom = width, height, max_geom
         self.camera_id = self._camera(camera_id, camera_name)
@@ -101,30 +105,52 @@ class MujocoRenderer:
     def render(self, render_mode: str | None, camera_id: int | None = None, camera_name: str | None = None) -> Any:
         """Draws the environment: ``rgb_array``, ``depth_array`` or ``rgbd_tuple``; before Gymnasium 1.0 with a camera.
 
-        Raises:
-            NotImplementedError: ``human``: there is no window.
+        ``human`` shows it on a page of this machine and returns ``None``. The first call prints the address. While a browser
+        shows it, the environment runs in real time.
         """
         if render_mode == "human":
-            raise NotImplementedError(
-                "render_mode human: there is no window here. Show pictures of render_mode='rgb_array' with matplotlib or pygame "
-                "(gymnasium.wrappers.HumanRendering)"
-            )
+            self._show()
+            return None
         if render_mode not in _MODES:
-            raise AttributeError(f"Unexpected mode: {render_mode}, expected modes: {', '.join(_MODES)}")
+            raise AttributeError(f"Unexpected mode: {render_mode}, expected modes: human, {', '.join(_MODES)}")
         if self.viewer is None:
             self.viewer = OffScreenViewer(self.model, self.data, self.width, self.height)
-            for key, value in (self.default_cam_config or {}).items():
-                if isinstance(value, np.ndarray):
-                    getattr(self.viewer.cam, key)[:] = value
-                else:
-                    setattr(self.viewer.cam, key, value)
+            self._place(self.viewer.cam)
         chosen = self.camera_id
         if camera_id is not None or camera_name is not None:
             chosen = self._camera(camera_id, camera_name)
         return self.viewer.render(render_mode, chosen)
 
+    def _place(self, cam: MjvCamera) -> None:
+        """Places a free camera as the environment asks."""
+        for key, value in (self.default_cam_config or {}).items():
+            if isinstance(value, np.ndarray):
+                getattr(cam, key)[:] = value
+            else:
+                setattr(cam, key, value)
+
+    def _show(self) -> None:
+        """Shows the state on the page and waits until it is due."""
+        if self._window is None:
+            self._window = Window(self.model, self.data)
+            self._window.cam.lookat[:] = np.median(self.data.geom_xpos, axis=0)
+            self._window.cam.distance = self.model.stat.extent
+            self._place(self._window.cam)
+            if self.camera_id >= 0:
+                self._window.choose(self.camera_id)
+        if not self._window.is_running() or not self._window.watched:
+            return
+        self._window.sync()
+        time_shown, at = self._shown
+        ahead = float(self.data.time) - time_shown - (time.monotonic() - at)
+        if 0 < ahead < 1:  # otherwise an episode has begun, or the page was just opened
+            time.sleep(ahead)
+        self._shown = (float(self.data.time), time.monotonic())
+
     def close(self) -> None:
-        """Has no effect, because there is no window and no context."""
+        """Closes the page, if there is one."""
+        if self._window is not None:
+            self._window.close()
 
 
 def __getattr__(name: str) -> NoReturn:

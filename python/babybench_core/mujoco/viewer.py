@@ -1,4 +1,4 @@
-"""``mujoco.viewer`` for environments: a page on this machine that shows ``env.data`` while a program steps it."""
+"""``mujoco.viewer``: a page on this machine that shows a state while a program steps it, of an environment or of any model."""
 
 from __future__ import annotations
 
@@ -7,23 +7,35 @@ from collections.abc import Callable, Iterator
 from typing import Any
 
 from .. import _native
+from .data import MjData
+from .functions import mj_forward, mj_resetData, mj_step
+from .jacobians import check
+from .model import MjModel, is_compiled
+from .window import Window, run
 
-__all__ = ["Handle", "launch", "launch_passive"]
+__all__ = ["Handle", "Window", "launch", "launch_from_path", "launch_passive"]
 
 
 def _core(model: Any, data: Any) -> Any:
-    """Returns the environment beneath a state."""
+    """Returns the environment beneath a state, or ``None`` for one of a model without an environment.
+
+    Raises:
+        TypeError: It is neither, or the state of another model.
+    """
+    if is_compiled(model) and isinstance(data, MjData):
+        check(model, data)
+        return None
     sync = getattr(data, "__dict__", {}).get("_sync")
     if sync is None or data.model is not model:
-        raise NotImplementedError(
-            "mujoco.viewer shows environments here: give it env.model and env.data of one environment. For other models "
-            "draw pictures with mujoco.Renderer, or install mujoco (pip install mujoco)"
+        raise TypeError(
+            "mujoco.viewer shows an MjModel with its MjData, or env.model and env.data of one environment, not "
+            f"{type(model).__name__} and {type(data).__name__}"
         )
     return sync.core
 
 
 class Handle:
-    """A page that shows a state.
+    """A page that shows an environment.
 
     Attributes:
         url: The address of the page, on this machine alone.
@@ -91,30 +103,72 @@ def launch_passive(
     key_callback: Callable[[int], None] | None = None,
     show_left_ui: bool = True,
     show_right_ui: bool = True,
-) -> Handle:
+) -> Handle | Window:
     """Opens a page for a state that the program steps, and prints its address.
 
+    The picture is drawn in ``sync()``, in the thread of the program, when a browser waits for one. Otherwise nothing is drawn.
+
     Args:
-        model: ``env.model`` of an environment.
-        data: Its ``env.data``.
-        key_callback: Must be ``None``: the page has keys of its own.
-        show_left_ui: Not used: the page has its own.
-        show_right_ui: Not used.
+        model: The model, or ``env.model`` of an environment.
+        data: Its state, or ``env.data``.
+        key_callback: Called in ``sync()`` with GLFW's code of a key pressed on the page. Pages of environments have their
+            own keys, so it must be ``None`` for them.
+        show_left_ui: Has no effect: the page has its own controls.
+        show_right_ui: Has no effect.
 
     Raises:
-        NotImplementedError: Another model, or a callback.
+        TypeError: ``data`` is no state of ``model``.
+        NotImplementedError: A callback for an environment.
     """
+    if _core(model, data) is None:
+        return Window(model, data, key_callback)
     _refuse({"key_callback": key_callback})
     return Handle(model, data)
 
 
-def launch(model: Any = None, data: Any = None, *, show_left_ui: bool = True, show_right_ui: bool = True) -> None:
-    """Opens a page and steps the state until the program is interrupted (Ctrl-C).
+def launch(
+    model: Any = None,
+    data: Any = None,
+    *,
+    loader: Callable[[], tuple[Any, ...]] | None = None,
+    show_left_ui: bool = True,
+    show_right_ui: bool = True,
+) -> None:
+    """Opens a page and steps the state in real time until the page is closed or the program is interrupted (Ctrl-C).
+
+    Args:
+        model: The model, or ``env.model`` of an environment.
+        data: Its state; a new one by default.
+        loader: A function that returns the model and the state, instead of them.
+        show_left_ui: Has no effect: the page has its own controls.
+        show_right_ui: Has no effect.
 
     Raises:
-        NotImplementedError: The model does not belong to an environment.
+        TypeError: There is no model, or ``data`` is no state of it.
     """
-    with contextlib.suppress(KeyboardInterrupt), Handle(model, data) as handle:
-        while handle.is_running():
-            handle._env.physics_step()
-            handle.sync()
+    if loader is not None:
+        if model is not None or data is not None:
+            raise TypeError("mujoco.viewer.launch takes a model and a state, or a loader, not both")
+        model, data = loader()[:2]
+    if data is None and is_compiled(model):
+        data = MjData(model)
+    with contextlib.suppress(KeyboardInterrupt):
+        if _core(model, data) is None:
+            mj_forward(model, data)
+            with Window(model, data, controls=True) as window:
+                run(window, lambda: mj_step(model, data), lambda: _restart(model, data))
+            return
+        with Handle(model, data) as handle:
+            while handle.is_running():
+                handle._env.physics_step()
+                handle.sync()
+
+
+def launch_from_path(path: str, *, show_left_ui: bool = True, show_right_ui: bool = True) -> None:
+    """Opens a page for the model of a file: see :func:`launch`."""
+    launch(MjModel.from_xml_path(path), show_left_ui=show_left_ui, show_right_ui=show_right_ui)
+
+
+def _restart(model: MjModel, data: MjData) -> None:
+    mj_resetData(model, data)
+    mj_forward(model, data)
