@@ -15,6 +15,7 @@ import numpy.typing as npt
 from babybench_core import _native
 from babybench_core.env import Env, make
 from babybench_core.noise import ActionNoise
+from babybench_core.notebook import NotebookOutput
 
 __all__ = ["View", "view"]
 
@@ -47,8 +48,8 @@ class View:
 
     A program either steps the environment itself and calls :meth:`show` after each step, or lets :meth:`play` or :meth:`start` do
     both. Pictures are drawn when a browser asks for one; a view without an open page draws nothing. In a notebook a view
-    that ends a cell is an ``<iframe>``, which needs a browser that reaches the machine of the kernel;
-    :func:`babybench.film` makes a recording that plays anywhere.
+    that ends a cell is the page. If the browser does not reach the machine of the kernel, pictures replace it after three
+    seconds, up to five per second, sent through the notebook. :func:`babybench.film` makes a recording, which also plays later.
 
     Example:
         >>> import babybench
@@ -86,6 +87,7 @@ class View:
         self._native = _native.View(title or f"{inside.config['behavior']} in {inside.config['scene']}", port)
         self.url = self._native.url
         self._height = height
+        self._output: Optional[NotebookOutput] = None
         self._thread: Optional[threading.Thread] = None
         self._stop = threading.Event()
         self._error: Optional[BaseException] = None
@@ -104,6 +106,7 @@ class View:
         Returns:
             Whether a new episode was requested (the button "Start again").
         """
+        self._stepped()
         if not self._native.watched:
             return False
         core = self._inside._core
@@ -182,21 +185,34 @@ class View:
                 action = choose(observation) if self._native.moves else still
                 observation, _, terminated, truncated, _ = self.env.step(np.asarray(action, np.float32))
                 self._native.stepped(core, self._inside.dt)
+                self._stepped()
                 over = terminated or truncated
             if over:
                 done += 1
                 observation, _ = self.env.reset()
                 self._native.restarted(core)
 
+    def _stepped(self) -> None:
+        """Tells the notebook that there is something new to see."""
+        if self._output is not None:
+            self._output.update(self._native.watched)
+
+    def _ipython_display_(self) -> None:
+        """Shows the page in a notebook, or pictures if no browser reaches it."""
+        note = (
+            "<small>This browser does not reach the machine of the kernel, so pictures come through the notebook. To turn the "
+            f"camera and pull MIMo, forward port {self._port()} and run the cell again.</small>"
+        )
+        height = min(int(self._height), 480)
+        size = (4 * height // 3, height)
+        page = f"<div>{self._repr_html_()}</div>"  # IPython warns of HTML that starts with a frame
+        self._output = NotebookOutput(page, note, lambda: self._inside.picture("closeup", *size))
+
     def _repr_html_(self) -> str:
         """Returns the page in a frame, for notebooks."""
         url = html.escape(self.url, quote=True)
         style = f"width:100%;height:{int(self._height)}px;border:0;border-radius:8px"
-        note = (
-            "<small>Nothing above? Then this browser does not reach the machine of the kernel: "
-            f'forward port {self._port()}, or show a recording with <code>babybench.film("self_touch", "held")</code>.</small>'
-        )
-        return f'<iframe src="{url}" title="BabyBench" style="{style}"></iframe><br>{note}'
+        return f'<iframe src="{url}" title="BabyBench" style="{style}"></iframe>'
 
     def _port(self) -> str:
         return self.url.split("/")[2].rpartition(":")[2]

@@ -9,6 +9,7 @@ import threading
 import time
 import urllib.error
 import urllib.request
+import warnings
 from pathlib import Path
 from typing import Any
 
@@ -18,6 +19,7 @@ import pytest
 from conftest import SMALL
 
 import babybench
+from babybench_core import notebook
 
 
 def ask(view: babybench.View, words: str = "") -> tuple[dict[str, Any], bytes]:
@@ -73,6 +75,79 @@ def test_a_notebook_shows_the_page_in_a_frame() -> None:
         assert view.url in repr(view)
         view.stop()
         view.env.close()
+
+
+class Handles:
+    """Stands in for the outputs of a cell: what each shows now."""
+
+    def __init__(self, monkeypatch: pytest.MonkeyPatch) -> None:
+        self.outputs: list[str] = []
+        monkeypatch.setattr(notebook, "_display", self.display)
+        monkeypatch.setattr(notebook, "_update", self.update)
+        monkeypatch.setattr(notebook, "FASTEST", 0.0)
+        monkeypatch.setattr(notebook, "SHARE", 1.0)
+
+    def display(self, html: str) -> int:
+        self.outputs.append(html)
+        return len(self.outputs) - 1
+
+    def update(self, handle: int, html: str) -> None:
+        self.outputs[handle] = html
+
+
+def test_a_notebook_far_from_its_kernel_shows_pictures(env: babybench.Env, monkeypatch: pytest.MonkeyPatch) -> None:
+    pytest.importorskip("PIL", reason="pictures in notebooks need Pillow")
+    handles = Handles(monkeypatch)
+    action = np.zeros(env.action_space.shape, np.float32)
+    with babybench.view(env, height=96) as view:
+        view._ipython_display_()
+        view.show()
+        assert handles.outputs == [f"<div>{view._repr_html_()}</div>", ""]
+        monkeypatch.setattr(notebook, "PATIENCE", 0.0)
+        view.show()
+        frame, first = handles.outputs
+        assert "does not reach the machine of the kernel" in frame
+        assert first.startswith('<img src="data:image/webp;base64,')
+        assert 'width="128" height="96"' in first
+        for _ in range(20):
+            env.step(action + 1)
+        view.show()
+        assert handles.outputs[1] != first
+
+
+def test_a_notebook_beside_its_kernel_keeps_the_page(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(notebook, "PATIENCE", 0.0)
+    handles = Handles(monkeypatch)
+    output = notebook.NotebookOutput("page", "note", lambda: pytest.fail("a picture was drawn"))
+    output.update(watched=True)
+    output.update(watched=False)
+    assert handles.outputs == ["page", ""]
+
+
+def test_a_kernel_sends_pictures_of_a_live_view(tmp_path: Path) -> None:
+    nbclient = pytest.importorskip("nbclient", reason="notebooks need nbclient and ipykernel")
+    pytest.importorskip("ipykernel", reason="notebooks need nbclient and ipykernel")
+    pytest.importorskip("PIL", reason="pictures in notebooks need Pillow")
+    import nbformat
+
+    page = nbformat.v4.new_notebook()
+    page.cells = [
+        nbformat.v4.new_code_cell(
+            "import babybench, babybench_core.notebook as notebook, time\nnotebook.PATIENCE = 0.1"
+        ),
+        nbformat.v4.new_code_cell(
+            'view = babybench.view({"behavior": "self_touch", "touch_active": False}, "held", height=90)\nview'
+        ),
+        nbformat.v4.new_code_cell("while view._output._next == 0:\n    time.sleep(0.05)\nview.close()"),
+    ]
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # of Jupyter's own
+        nbclient.NotebookClient(page, timeout=300, resources={"metadata": {"path": str(tmp_path)}}).execute()
+    outputs = page.cells[1]["outputs"]
+    assert [out["output_type"] for out in outputs] == ["display_data"] * 2, outputs  # no warnings, either
+    frame, picture = [out["data"]["text/html"] for out in outputs]
+    assert "forward port" in frame
+    assert picture.startswith('<img src="data:image/webp;base64,')
 
 
 def test_a_program_shows_its_own_steps_and_is_not_held_while_nobody_looks(env: babybench.Env) -> None:
