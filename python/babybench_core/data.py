@@ -106,8 +106,8 @@ class Episode(Mapping[str, np.ndarray]):
 
     @property
     def _grown(self) -> dict[str, Any]:
-        """The age, as a key of the configuration, if it differs from the record's."""
-        return {"age": self.description["age"]} if "age" in self.description else {}
+        """The age and the number of the infant, as keys of the configuration, if they differ from the record's."""
+        return {key: self.description[key] for key in ("age", "body_number") if key in self.description}
 
     @property
     def info(self) -> dict[str, Any]:

@@ -62,6 +62,13 @@ _SINGLE = {
 """Attributes that a vector's environments share, and the names of the vector's attributes for them."""
 
 
+def _population(config: dict[str, Any], num_envs: int) -> tuple[dict[str, Any], ...]:
+    """Returns the configurations of environments that have one, each with the next infant of its population."""
+    if not config["body_random"]:
+        return (config,) * num_envs
+    return tuple({**config, "body_number": config["body_number"] + number} for number in range(num_envs))
+
+
 class VectorEnv(gymnasium.vector.VectorEnv):  # type: ignore[type-arg, unused-ignore]
     """Environments that are stepped together, on all cores.
 
@@ -105,7 +112,8 @@ class VectorEnv(gymnasium.vector.VectorEnv):  # type: ignore[type-arg, unused-ig
 
         Args:
             config: The configuration of all environments (an example, a mapping or the path of a YAML file), or a list with
-                one for each; scenes and behaviors may differ, spaces may not.
+                one for each; scenes and behaviors may differ, spaces may not. With ``body_random`` each environment of one
+                configuration has another infant of the population.
             num_envs: How many; by default 1, or the length of the list.
             autoreset_mode: When the next episode starts: Gymnasium's ``AutoresetMode`` or its value (``"NextStep"``,
                 ``"SameStep"``, ``"Disabled"``). By default as Gymnasium's own vectors do.
@@ -146,8 +154,10 @@ class VectorEnv(gymnasium.vector.VectorEnv):  # type: ignore[type-arg, unused-ig
         self.autoreset_mode = mode
         shared = scenes.blueprint(full[0], self._assets)  # kept until the environments share it
         _native.VectorEnv.check_memory(shared, num_envs, _MODES[mode], *self._limits, self._kept)
-        self.configs: tuple[dict[str, Any], ...] = tuple(full) if len(full) == num_envs else (full[0],) * num_envs
-        """The configurations of all environments."""
+        self.configs: tuple[dict[str, Any], ...] = (
+            tuple(full) if len(full) == num_envs else _population(full[0], num_envs)
+        )
+        """The configurations of all environments. With ``body_random``, those of one configuration differ in ``body_number``."""
         self._build()
         self._camera = scenes.camera_of(self._blueprints[0], camera)
         self._everyone: Mask = np.ones(num_envs, np.bool_)

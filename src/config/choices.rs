@@ -139,6 +139,19 @@ choices! {
 }
 
 choices! {
+    /// The sex of an infant, by which the standards of growth differ (`sex`).
+    Sex {
+        /// Not given.
+        #[default]
+        None = "none",
+        /// A boy.
+        Boy = "boy",
+        /// A girl.
+        Girl = "girl",
+    }
+}
+
+choices! {
     /// The infant that learns, of two in a custom scene (`learner`).
     Learner {
         /// The one in `mimo_location`.

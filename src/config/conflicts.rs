@@ -2,7 +2,7 @@
 
 use super::error::Conflict;
 use super::{
-    ActuationModel, Behavior, Compat, Config, DelayUnit, Delays, KeyValue, Reflex, StrengthModel, TouchFunction,
+    ActuationModel, Behavior, Compat, Config, DelayUnit, Delays, KeyValue, Reflex, Sex, StrengthModel, TouchFunction,
     VisionOutput, defaults, latencies, table,
 };
 
@@ -27,10 +27,16 @@ const SIDES: [&str; 7] = [
 ];
 
 /// Keys of MIMo's body and motors that the Python code of BabyBench does not have.
-const BODY: [&str; 6] = [
+const BODY: [&str; 12] = [
     "strength",
     "springs",
     "proportions",
+    "sex",
+    "length_z",
+    "weight_z",
+    "head_z",
+    "gestation",
+    "body_random",
     "noise_motor_color",
     "reflexes",
     "age_schedule",
@@ -44,7 +50,22 @@ struct SenseKeys {
 }
 
 /// The keys that shape senses that can be off, or motors.
-const SHAPING: [SenseKeys; 9] = [
+const SHAPING: [SenseKeys; 12] = [
+    SenseKeys {
+        off: |c| c.individual.random == 0.0,
+        keys: &["body_seed", "body_number"],
+        reason: "it chooses an infant of a population, and there is none; set `body_random` above 0",
+    },
+    SenseKeys {
+        off: |c| c.individual.random == 0.0 && c.individual.sex == Sex::None,
+        keys: &["length_z", "weight_z", "head_z", "gestation"],
+        reason: "the standards of growth are of boys or of girls; set `sex: boy` or `sex: girl`",
+    },
+    SenseKeys {
+        off: |c| c.measurements.head_circumference.is_some(),
+        keys: &["head_z"],
+        reason: "`head_circumference` sets the same length; leave one of the two out",
+    },
     SenseKeys {
         off: |c| c.age_schedule.is_empty(),
         keys: &["age_grid"],

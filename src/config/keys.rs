@@ -2,7 +2,7 @@
 
 use super::choices::{
     ActuationModel, Behavior, Compat, DelayUnit, EngineKind, FacialExpression, Learner, Limb, Proportions, ReflexVor,
-    RendererKind, SpringModel, StartingPosition, StrengthModel, TouchFunction, TouchResponse, VisionOutput,
+    RendererKind, Sex, SpringModel, StartingPosition, StrengthModel, TouchFunction, TouchResponse, VisionOutput,
 };
 use super::kinds::KeyValue;
 use super::outputs::VisionOutputs;
@@ -47,6 +47,7 @@ field! {
     StrengthModel, Choice, v => Self::from_name(v), |f| f.name();
     SpringModel, Choice, v => Self::from_name(v), |f| f.name();
     Proportions, Choice, v => Self::from_name(v), |f| f.name();
+    Sex, Choice, v => Self::from_name(v), |f| f.name();
     ActuationModel, Choice, v => Self::from_name(v), |f| f.name();
     TouchFunction, Choice, v => Self::from_name(v), |f| f.name();
     TouchResponse, Choice, v => Self::from_name(v), |f| f.name();

@@ -46,7 +46,8 @@ mod tests;
 
 pub use choices::{
     ActuationModel, Behavior, Compat, DelayUnit, EngineKind, FacialExpression, Learner, Limb, Proportions, Reflex,
-    ReflexVor, RendererKind, SpringModel, StartingPosition, StrengthModel, TouchFunction, TouchResponse, VisionOutput,
+    ReflexVor, RendererKind, Sex, SpringModel, StartingPosition, StrengthModel, TouchFunction, TouchResponse,
+    VisionOutput,
 };
 pub use error::{ConfigError, Location};
 pub use examples::Example;
@@ -60,8 +61,8 @@ pub use schedule::AgeSchedule;
 pub use table::Config;
 pub use table::Key;
 pub use table::{
-    CatchOptions, Delays, EyeOptions, MAX_AGE, Measurements, MobileOptions, NoiseLevels, PainOptions, PlayOptions,
-    ReflexDelays, ReflexGains, ReflexOptions, RollOverOptions, StrengthFactors,
+    CatchOptions, Delays, EyeOptions, IndividualOptions, MAX_AGE, Measurements, MobileOptions, NoiseLevels,
+    PainOptions, PlayOptions, ReflexDelays, ReflexGains, ReflexOptions, RollOverOptions, StrengthFactors,
 };
 
 use std::path::Path;

@@ -3,7 +3,7 @@
 
 use super::choices::{
     ActuationModel, Behavior, Compat, DelayUnit, EngineKind, FacialExpression, Learner, Limb, Proportions, ReflexVor,
-    RendererKind, SpringModel, StartingPosition, StrengthModel, TouchFunction, TouchResponse, VisionOutput,
+    RendererKind, Sex, SpringModel, StartingPosition, StrengthModel, TouchFunction, TouchResponse, VisionOutput,
 };
 use super::keys::{ConfigField, config};
 use super::kinds::{KeyKind, KeyValue};
@@ -43,6 +43,13 @@ const AGES: KeyKind = KeyKind::NoneOrAges { max: MAX_AGE };
 const GRID: KeyKind = KeyKind::Number {
     min: 0.01,
     max: MAX_AGE,
+};
+const SCORE: KeyKind = KeyKind::NoneOr { min: -3.0, max: 3.0 };
+const WEEKS: KeyKind = KeyKind::NoneOr { min: 24.0, max: 42.0 };
+const SPREAD: KeyKind = KeyKind::Number { min: 0.0, max: 2.0 };
+const PLACE: KeyKind = KeyKind::Whole {
+    min: 0,
+    max: u32::MAX as u64,
 };
 const CENTIMETRES: KeyKind = KeyKind::NoneOr { min: 0.1, max: 100.0 };
 const DELAY: KeyKind = KeyKind::Number {
@@ -165,6 +172,16 @@ config! {
         springs: SpringModel = SpringModel::Fixed, Choice(SpringModel::NAMES), "What springs and dampers of joints follow." + "`fixed` keeps those of the original proportions, `weight` follows the torque of gravity on each joint.";
         proportions: Proportions = Proportions::Mimo, Choice(Proportions::NAMES), "The source of MIMo's proportions." + "`mimo` are the authors' formulas, `measured` keeps their length and divides it between trunk and legs as in infants.";
         touch_grows: bool = false, Bool, "Touch sensors keep their number and move with the body, instead of keeping their spacing.";
+        @group individual: IndividualOptions, "How MIMo differs from other infants of his age (`sex`, `length_z` ...).", "How an infant differs from others of his age, by the standards of growth." {
+            sex as sex: Sex = Sex::None, Choice(Sex::NAMES), "The sex of a MIMo with the length, weight and head circumference of the standards of growth; none for the formulas of MIMo's authors.";
+            length_z as length_z: Option<f64> = None, SCORE, "The z-score of his length among infants of his sex and age; none for 0, the median.";
+            weight_z as weight_z: Option<f64> = None, SCORE, "The z-score of his weight among infants of his sex and age; none for 0, the median.";
+            head_z as head_z: Option<f64> = None, SCORE, "The z-score of his head circumference among infants of his sex and age; none for 0, the median.";
+            gestation as gestation: Option<f64> = None, WEEKS, "The weeks of pregnancy at his birth, from which `age` counts; none for a birth at term.";
+            random as body_random: f64 = 0.0, SPREAD, "Standard deviation of the z-scores of an infant drawn from a population, 1 for that of the standards; 0 draws nothing.";
+            seed as body_seed: u64 = 0, SEED, "The seed of the population of `body_random`.";
+            number as body_number: u64 = 0, PLACE, "The number of the infant in the population; row i of a vector has the i-th after him.";
+        }
         @group strength_factors: StrengthFactors, "Factors on the strength of groups of joints (`strength_neck` ...).", "Factors on the strength of groups of joints by [`StrengthModel::Infant`]." {
             neck as strength_neck: f64 = 1.0, FACTOR, "Factor on the strength of the neck by `strength: infant`.";
             trunk as strength_trunk: f64 = 1.0, FACTOR, "Factor on the strength of the trunk by `strength: infant`.";

@@ -57,6 +57,7 @@ fn defaults_are_those_of_the_api_page() {
                 act_eyes=true act_others=false REFLEXES lock_hands=false lock_fingers=false lock_arms=false lock_feet=false lock_legs=false \
                 lock_body=false lock_head=false lock_eyes=false";
     let growth = "age=none age_schedule=none age_grid=0.25 strength_age=none strength=volume springs=fixed proportions=mimo touch_grows=false \
+                  sex=none length_z=none weight_z=none head_z=none gestation=none body_random=0.0 body_seed=0 body_number=0 \
                   strength_neck=1.0 strength_trunk=1.0 strength_shoulder=1.0 \
                   strength_elbow=1.0 strength_wrist=1.0 strength_grip=1.0 strength_hip=1.0 strength_knee=1.0 \
                   strength_ankle=1.0 ankle_circumference=none calf_circumference=none \

@@ -1,6 +1,6 @@
 //! Blueprints: everything that environments of one configuration share.
 
-mod ages;
+mod bodies;
 mod options;
 mod settled;
 mod surface;
@@ -22,10 +22,10 @@ use crate::config::{Config, EngineKind, RendererKind};
 use crate::mimo::scene_assets;
 use crate::model::Model;
 use crate::physics::{Engine, Params, Shared, State};
-use crate::render::{RenderError, RendererPool};
+use crate::render::{RenderError, RendererPool, Scenery};
 use crate::sensors::transform::Sense;
 use crate::sensors::{Proprioception, SkinLayout, Vestibular};
-use ages::AgeCache;
+use bodies::BodyCache;
 use settled::{SettledScene, make_skin, task_model};
 use surface::SkinAndScenery;
 
@@ -59,7 +59,7 @@ pub struct Blueprint {
     /// Identity, model and parameters from before a program changed the model.
     origin: Arc<UnchangedModel>,
     surface: SkinAndScenery,
-    ages: AgeCache,
+    bodies: BodyCache,
 }
 
 /// Constant tables derived from configuration and model. Environments share them, because copies would compete for the caches.
@@ -140,7 +140,12 @@ impl Blueprint {
     /// # Errors
     /// An invalid configuration, assets that do not load, a scene that the engine cannot simulate or that diverges, and errors of the
     /// task.
-    pub fn with(mut config: Config, options: BlueprintOptions) -> Result<Self, EnvError> {
+    pub fn with(config: Config, options: BlueprintOptions) -> Result<Self, EnvError> {
+        Self::made(config, options, None)
+    }
+
+    /// Builds a scene; `like` is the look of another with the same assets.
+    fn made(mut config: Config, options: BlueprintOptions, like: Option<&Scenery>) -> Result<Self, EnvError> {
         // MIMo begins at the first age of his schedule
         config.age = config.age.or(config.age_schedule.at(0, config.age_grid));
         // fields of a configuration are public, and what follows relies on their bounds
@@ -171,9 +176,9 @@ impl Blueprint {
         let blueprint = Self::settled(config, task, model, surface)?;
         // a texture that cannot be read is then an error here and not in the first step
         if blueprint.config.vision_active {
-            blueprint.scenery()?;
+            blueprint.make_scenery(like)?;
         }
-        Ok(blueprint.keeping_ages())
+        Ok(blueprint.keeping_bodies())
     }
 
     /// Binds the task to a model and lets it settle the scene.
@@ -211,7 +216,7 @@ impl Blueprint {
             init_qvel: Arc::new(settled.qvel),
             params,
             surface,
-            ages: AgeCache::default(),
+            bodies: BodyCache::default(),
         })
     }
 

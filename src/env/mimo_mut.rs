@@ -54,6 +54,18 @@ impl MimoMut<'_> {
         Ok(())
     }
 
+    /// Makes MIMo another infant of his population (`body_random`), between two episodes: see
+    /// [`Blueprint::with_body_number`](crate::Blueprint::with_body_number). The next call must be a reset. What remains is what remains of a
+    /// change of age.
+    ///
+    /// # Errors
+    /// As [`Blueprint::with_body_number`](crate::Blueprint::with_body_number). They change nothing.
+    pub fn set_body_number(&mut self, number: u64) -> Result<(), EnvError> {
+        let other = self.env.blueprint.with_body_number(number)?.env()?;
+        self.env.become_grown(other);
+        Ok(())
+    }
+
     /// Changes MIMo's face at any time. The next step has the same bits as without the change. Images of the eyes are redrawn.
     ///
     /// ```

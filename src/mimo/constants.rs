@@ -1,12 +1,12 @@
 //! The list of all constants of infants.
 
 use super::growth::constants;
-use super::reflexes;
 use super::sources::{Mark, SourcedConstant};
+use super::{individual, preterm, reflexes, standards};
 use crate::spaces::{INFANT_EXPONENT, INFANT_WEEKS};
 
 impl SourcedConstant {
-    /// Lists all constants of infants' strength, proportions, noise and reflexes.
+    /// Lists all constants of infants' strength, proportions, noise, reflexes and growth.
     pub fn all() -> Vec<Self> {
         let mut all = constants();
         let single = |name: &str, value: f64, unit| Self {
@@ -22,6 +22,9 @@ impl SourcedConstant {
         all.push(single("exponent of movements, first age", INFANT_WEEKS[0], "weeks"));
         all.push(single("exponent of movements, last age", INFANT_WEEKS[1], "weeks"));
         all.extend(reflexes::constants());
+        all.extend(standards::constants());
+        all.extend(preterm::constants());
+        all.extend(individual::constants());
         all
     }
 }

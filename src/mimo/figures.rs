@@ -1,6 +1,7 @@
 //! MIMo's stature and mass.
 
 use super::MimoJoints;
+use super::growth::head_circumference;
 use super::placement::reach;
 use crate::math::{column, dot, mat_t_vec};
 use crate::model::Model;
@@ -71,6 +72,14 @@ impl BodyFigures {
             dot(up, state.geom_xpos[g]) - far
         });
         Some(crown - rump.fold(f64::INFINITY, f64::min))
+    }
+}
+
+impl BodyFigures {
+    /// Returns the circumference of the head, m, as the key `head_circumference` has it; `None` without a MIMo.
+    pub fn head_circumference(model: &Model) -> Option<f64> {
+        let geom = model.body_geomadr[model.body("head")?];
+        Some(head_circumference(model.geom_size.get(geom)?[0]) / 100.0)
     }
 }
 

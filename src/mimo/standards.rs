@@ -1,4 +1,6 @@
-//! Growth of infants according to the World Health Organization, for comparison with MIMo's.
+//! Growth of infants according to the World Health Organization.
+
+use super::sources::{Mark, SourcedConstant};
 
 /// The distribution of a measurement at an age, as L, M and S of T. J. Cole's method: M is the median, S the coefficient of variation,
 /// L the power that makes it normal.
@@ -33,16 +35,24 @@ impl Lms {
     }
 }
 
-/// Length and weight of boys or of girls at an age, by the WHO Child Growth Standards (Multicentre Growth Reference Study Group,
-/// "WHO Child Growth Standards: Length/height-for-age, weight-for-age, ...: Methods and development", 2006).
+/// The name of the WHO's standards.
+pub(super) const WHO: &str = "WHO Child Growth Standards 2006";
+
+/// Length, weight and head circumference of boys or of girls at an age. [`GrowthStandard::at`] has those of the WHO Child Growth Standards
+/// (Multicentre Growth Reference Study Group, "WHO Child Growth Standards: Methods and development", 2006, and the volume of 2007 on head
+/// circumference). [`GrowthStandard::of_config`] chooses those of MIMo's age.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GrowthStandard {
     /// `boys` or `girls`.
     pub of: &'static str,
+    /// Name of the standard.
+    pub source: &'static str,
     /// Recumbent length, cm.
     pub length: Lms,
     /// Weight, kg.
     pub weight: Lms,
+    /// Head circumference, cm.
+    pub head: Lms,
 }
 
 impl GrowthStandard {
@@ -56,16 +66,43 @@ impl GrowthStandard {
     /// assert!((boys.length.z(boys.length.value(-2.0)) + 2.0).abs() < 1e-12);
     /// ```
     pub fn at(age: f64) -> [Self; 2] {
-        let standard = |of, length: &[[f64; 3]; 25], weight: &[[f64; 3]; 25]| Self {
+        let standard = |of, [length, weight, head]: [&[[f64; 3]; 25]; 3]| Self {
             of,
+            source: WHO,
             length: between(length, age),
             weight: between(weight, age),
+            head: between(head, age),
         };
         [
-            standard("boys", &LENGTH_OF_BOYS, &WEIGHT_OF_BOYS),
-            standard("girls", &LENGTH_OF_GIRLS, &WEIGHT_OF_GIRLS),
+            standard("boys", [&LENGTH_OF_BOYS, &WEIGHT_OF_BOYS, &HEAD_OF_BOYS]),
+            standard("girls", [&LENGTH_OF_GIRLS, &WEIGHT_OF_GIRLS, &HEAD_OF_GIRLS]),
         ]
     }
+}
+
+/// Ages of the listed medians, months.
+const LISTED: [f64; 5] = [0.0, 3.0, 6.0, 12.0, 24.0];
+
+/// Lists medians of the standards.
+pub(super) fn constants() -> Vec<SourcedConstant> {
+    let kinds: [(&str, &str, fn(&GrowthStandard) -> Lms); 3] = [
+        ("length", "cm", |of| of.length),
+        ("weight", "kg", |of| of.weight),
+        ("head circumference", "cm", |of| of.head),
+    ];
+    let each = kinds.into_iter().flat_map(|kind| [(kind, 0), (kind, 1)]);
+    each.map(|((what, unit, pick), sex)| {
+        let of = |age: f64| GrowthStandard::at(age)[sex];
+        SourcedConstant {
+            name: format!("median {what} of {}", of(0.0).of),
+            values: LISTED.map(|age| pick(&of(age)).m).to_vec(),
+            ages: LISTED.to_vec(),
+            unit,
+            source: "WHO Child Growth Standards 2006 and 2007, tables of whole months with L, M and S",
+            mark: Mark::Read,
+        }
+    })
+    .collect()
 }
 
 /// Interpolates in a table of whole months.
@@ -193,6 +230,64 @@ const WEIGHT_OF_GIRLS: [[f64; 3]; 25] = [
     [-0.2941, 11.4775, 0.1239],
 ];
 
+/// Head circumference of boys, cm, at the day nearest to each month.
+const HEAD_OF_BOYS: [[f64; 3]; 25] = [
+    [1.0, 34.4618, 0.03686],
+    [1.0, 37.2435, 0.03135],
+    [1.0, 39.1349, 0.02997],
+    [1.0, 40.5008, 0.02918],
+    [1.0, 41.6401, 0.02868],
+    [1.0, 42.5524, 0.02837],
+    [1.0, 43.3393, 0.02817],
+    [1.0, 43.9791, 0.02804],
+    [1.0, 44.5384, 0.02796],
+    [1.0, 45.0007, 0.02792],
+    [1.0, 45.4004, 0.0279],
+    [1.0, 45.7593, 0.02789],
+    [1.0, 46.0637, 0.02789],
+    [1.0, 46.3421, 0.02789],
+    [1.0, 46.5834, 0.02791],
+    [1.0, 46.809, 0.02792],
+    [1.0, 47.0088, 0.02795],
+    [1.0, 47.1936, 0.02797],
+    [1.0, 47.3718, 0.028],
+    [1.0, 47.5341, 0.02803],
+    [1.0, 47.6931, 0.02806],
+    [1.0, 47.8399, 0.0281],
+    [1.0, 47.985, 0.02814],
+    [1.0, 48.1198, 0.02817],
+    [1.0, 48.2536, 0.02821],
+];
+
+/// Head circumference of girls, cm.
+const HEAD_OF_GIRLS: [[f64; 3]; 25] = [
+    [1.0, 33.8787, 0.03496],
+    [1.0, 36.5163, 0.03211],
+    [1.0, 38.258, 0.03168],
+    [1.0, 39.521, 0.0314],
+    [1.0, 40.5895, 0.03119],
+    [1.0, 41.454, 0.03102],
+    [1.0, 42.2079, 0.03087],
+    [1.0, 42.8278, 0.03075],
+    [1.0, 43.3753, 0.03063],
+    [1.0, 43.8309, 0.03053],
+    [1.0, 44.2273, 0.03044],
+    [1.0, 44.5865, 0.03035],
+    [1.0, 44.894, 0.03027],
+    [1.0, 45.1779, 0.03019],
+    [1.0, 45.4255, 0.03012],
+    [1.0, 45.6582, 0.03005],
+    [1.0, 45.865, 0.02999],
+    [1.0, 46.0571, 0.02993],
+    [1.0, 46.2431, 0.02987],
+    [1.0, 46.4135, 0.02982],
+    [1.0, 46.5814, 0.02977],
+    [1.0, 46.7375, 0.02972],
+    [1.0, 46.8931, 0.02967],
+    [1.0, 47.0388, 0.02962],
+    [1.0, 47.1845, 0.02957],
+];
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -213,6 +308,35 @@ mod tests {
             [-2.0, 0.0, 2.0].map(|z| tenths(girls.length.value(z))),
             [61.2, 65.7, 70.3]
         );
+    }
+
+    /// Medians and coefficients of head circumference as the file of the WHO has them, boys then girls.
+    #[test]
+    fn heads_are_those_of_the_who() {
+        let months = [0.0, 1.0, 2.0, 3.0, 6.0, 9.0, 12.0, 18.0, 24.0];
+        let rows = [
+            [
+                34.4618, 37.2435, 39.1349, 40.5008, 43.3393, 45.0007, 46.0637, 47.3718, 48.2536,
+            ],
+            [
+                0.03686, 0.03135, 0.02997, 0.02918, 0.02817, 0.02792, 0.02789, 0.028, 0.02821,
+            ],
+            [
+                33.8787, 36.5163, 38.258, 39.521, 42.2079, 43.8309, 44.894, 46.2431, 47.1845,
+            ],
+            [
+                0.03496, 0.03211, 0.03168, 0.0314, 0.03087, 0.03053, 0.03027, 0.02987, 0.02957,
+            ],
+        ];
+        for (k, age) in months.into_iter().enumerate() {
+            let [boys, girls] = GrowthStandard::at(age).map(|standard| standard.head);
+            assert_eq!(
+                [boys.m, boys.s, girls.m, girls.s],
+                rows.map(|row| row[k]),
+                "{age} months"
+            );
+            assert_eq!((boys.l, girls.l), (1.0, 1.0));
+        }
     }
 
     #[test]

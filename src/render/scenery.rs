@@ -8,7 +8,7 @@ use crate::drawable::{Drawable, Element};
 use crate::flex::FlexLook;
 use crate::math::{Vec3, order, unit};
 use crate::mesh::Mesh;
-use crate::model::{CamLight, Model, TextureType};
+use crate::model::{CamLight, Model, Texture, TextureType};
 use crate::single::single;
 use crate::skin::{SkinLook, SkinPart};
 use crate::texture::{TextureLoader, TexturePixels};
@@ -118,6 +118,8 @@ pub struct Scenery {
     pub(super) skins: Vec<SkinLook>,
     /// Textures in use.
     pub textures: Vec<TexturePixels>,
+    /// Their recipes.
+    pub(super) recipes: Vec<Texture>,
     /// Index of the background in `textures`.
     pub sky: Option<usize>,
     /// Lights, without the headlight.
@@ -143,7 +145,15 @@ impl Scenery {
     /// Fails if an image is missing, broken or of a shape that does not fit, or if the textures together have more pixels than
     /// [`Limits::texture_pixels`](mjcf_sim_model::Limits::texture_pixels).
     pub fn new(model: &Model, assets: &dyn AssetSource) -> Result<Self, RenderError> {
-        Self::build(model, Some(TextureLoader::new(assets)))
+        Self::build(model, Some(TextureLoader::new(assets)), None)
+    }
+
+    /// Decodes only the textures that `other`, a scenery of the same assets, does not have, and shares the others.
+    ///
+    /// # Errors
+    /// As [`Scenery::new`].
+    pub fn sharing(model: &Model, assets: &dyn AssetSource, other: &Self) -> Result<Self, RenderError> {
+        Self::build(model, Some(TextureLoader::new(assets)), Some(other))
     }
 
     /// Leaves textures out, as if the model had none.
@@ -151,15 +161,17 @@ impl Scenery {
     /// # Errors
     /// None: only textures can fail.
     pub fn without_textures(model: &Model) -> Result<Self, RenderError> {
-        Self::build(model, None)
+        Self::build(model, None, None)
     }
 
-    fn build(model: &Model, loader: Option<TextureLoader>) -> Result<Self, RenderError> {
+    fn build(model: &Model, loader: Option<TextureLoader>, known: Option<&Self>) -> Result<Self, RenderError> {
         let mut used = UsedTextures {
             model,
             loader,
+            known,
             index: vec![None; model.textures.len()],
             textures: Vec::new(),
+            recipes: Vec::new(),
         };
         let far = model.vis.zfar * model.stat.extent;
         let mut meshes = vec![
@@ -189,7 +201,7 @@ impl Scenery {
             Some(id) => used.texture(id)?,
             None => None,
         };
-        let textures = used.textures;
+        let (textures, recipes) = (used.textures, used.recipes);
         for drawable in &mut drawables {
             let explicit = match drawable.element {
                 Element::Flex(flex) => !model.flexes[flex].texcoord.is_empty(),
@@ -209,6 +221,7 @@ impl Scenery {
             flexes,
             skins,
             textures,
+            recipes,
             sky,
             lights,
             headlight,

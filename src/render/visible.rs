@@ -5,8 +5,9 @@ use crate::drawable::{Drawable, Element, OPAQUE, Shape, material};
 use crate::flex::FlexLook;
 use crate::math::Vec3;
 use crate::mesh::Mesh;
-use crate::model::Model;
+use crate::model::{Model, Texture};
 use crate::model_mesh::ModelMeshes;
+use crate::scenery::Scenery;
 use crate::skin::SkinLook;
 use crate::tendon::{pieces, ropes};
 use crate::texture::{TextureLoader, TexturePixels};
@@ -114,9 +115,13 @@ fn flexes(model: &Model) -> impl Iterator<Item = Element> + '_ {
 pub(super) struct UsedTextures<'a> {
     pub model: &'a Model,
     pub loader: Option<TextureLoader<'a>>,
+    /// The scenery whose textures need not be decoded again.
+    pub known: Option<&'a Scenery>,
     /// The place of each texture of the model among those that are used.
     pub index: Vec<Option<usize>>,
     pub textures: Vec<TexturePixels>,
+    /// Their recipes.
+    pub recipes: Vec<Texture>,
 }
 
 impl UsedTextures<'_> {
@@ -126,7 +131,15 @@ impl UsedTextures<'_> {
             return Ok(None);
         };
         if self.index[id].is_none() {
-            self.textures.push(loader.texture(recipe)?);
+            let known = self.known.and_then(|scenery| {
+                let at = scenery.recipes.iter().position(|known| known == recipe)?;
+                scenery.textures.get(at)
+            });
+            self.textures.push(match known {
+                Some(texture) => texture.clone(),
+                None => loader.texture(recipe)?,
+            });
+            self.recipes.push(recipe.clone());
             self.index[id] = Some(self.textures.len() - 1);
         }
         Ok(self.index[id])

@@ -61,7 +61,9 @@ pub use many::RunVector;
 #[cfg(feature = "npz")]
 pub use motion::{Motion, MotionError, MotionMode, MotionResult, play_motion};
 #[cfg(feature = "npz")]
-pub use record::{ArrayDescription, EpisodeDescription, GeomDescription, JointDescription, Manifest};
+pub use record::{
+    ArrayDescription, EpisodeDescription, GeomDescription, InfantDescription, JointDescription, Manifest,
+};
 #[cfg(feature = "npz")]
 pub use record::{Record, RecordError, RecordOptions, Recorder, RepeatResult, VectorRecorder};
 #[cfg(feature = "npz")]

@@ -19,7 +19,7 @@ use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-pub use describe::{GeomDescription, JointDescription};
+pub use describe::{GeomDescription, InfantDescription, JointDescription};
 pub use manifest::{ArrayDescription, EpisodeDescription, Manifest};
 pub use many::VectorRecorder;
 pub use read::{Record, RepeatResult};
@@ -320,16 +320,18 @@ impl Recorder {
             last_checksum: rows.last_checksum(),
             info: serde_json::to_value(InfoWithDetails::from(env.info())).unwrap_or_default(),
             age: None,
+            body_number: None,
             unfinished,
         };
         rows.clear();
         self.spare = Some(rows);
         // only now, so that parallel recorders do not wait for each other's archives
         let mut manifest = lock(&self.shared.manifest);
-        let age = env.config().age;
+        let (age, number) = (env.config().age, env.config().individual.number);
         let description = EpisodeDescription {
             // only a change of age is written down, as the configuration of the manifest has the first one
             age: (age != manifest.configuration.age).then_some(age),
+            body_number: (number != manifest.configuration.individual.number).then_some(number),
             ..description
         };
         manifest.add(description, arrays);

@@ -29,7 +29,10 @@ pub enum VectorError {
         fit: usize,
     },
     /// The environments cannot share arrays.
-    #[error("environment {env} differs from environment 0 in {what}: {found} instead of {expected}")]
+    #[error(
+        "environment {env} differs from environment 0 in {what}: {found} instead of {expected}{}",
+        skin_advice(what)
+    )]
     Spaces {
         /// The environment that differs.
         env: usize,
@@ -119,6 +122,15 @@ pub enum VectorError {
     /// The system cannot start another thread.
     #[error("cannot start a thread: {0}")]
     Thread(#[from] std::io::Error),
+}
+
+/// Returns what makes the skins of different bodies equal, if it is they that differ.
+fn skin_advice(what: &str) -> &'static str {
+    if what.contains("touch") || what.contains("pain") {
+        "; bodies of other sizes have as many touch sensors with touch_grows set to True"
+    } else {
+        ""
+    }
 }
 
 /// Describes the number of environments that fit.

@@ -116,12 +116,22 @@ impl std::fmt::Debug for VectorEnv {
 }
 
 impl VectorEnv {
-    /// Makes `n` environments of one blueprint.
+    /// Makes `n` environments of one blueprint. With [`body_random`](crate::config::IndividualOptions::random) each has another infant of the
+    /// population: environment i that of [`Blueprint::with_body_number`], i after the blueprint's.
     ///
     /// # Errors
-    /// No environments, or more than memory holds; errors of [`Blueprint::env`]; a thread that the system cannot start.
+    /// No environments, or more than memory holds; errors of [`Blueprint::env`]; a thread that the system cannot start; infants whose
+    /// spaces differ, as those of touch do without [`touch_grows`](crate::Config::touch_grows).
     pub fn new(blueprint: &Blueprint, n: usize, options: VectorOptions) -> Result<Self, VectorError> {
-        Self::build(n, |_| blueprint, options)
+        if blueprint.config().individual.random == 0.0 {
+            return Self::build(n, |_| blueprint, options);
+        }
+        // before any infant is compiled
+        Self::check_memory(blueprint, n, options)?;
+        let first = blueprint.config().individual.number;
+        let infant = |(env, number)| blueprint.with_body_number(number).map_err(of(env));
+        let infants = (0..n).zip(first..).map(infant).collect::<Result<Vec<_>, _>>()?;
+        Self::from_blueprints(&infants, options)
     }
 
     /// Makes one environment of each blueprint. Scenes, behaviors and seeds may differ, but the spaces may not.

@@ -14,6 +14,7 @@ mod blanket;
 mod caregiver;
 mod composed;
 mod configurations;
+mod differences;
 mod eyes_at_once;
 mod growing;
 #[cfg(feature = "rapier")]
@@ -34,6 +35,7 @@ mod parts;
 mod plain_models;
 #[cfg(feature = "eval")]
 mod policies;
+mod populations;
 mod public_models;
 #[cfg(feature = "rapier")]
 mod rapier_engine;

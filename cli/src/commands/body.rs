@@ -3,7 +3,7 @@
 use std::io::{self, Write};
 
 use babybench::config::StrengthModel;
-use babybench::mimo::{BodyFigures, GrowthStandard, Lms, StrengthRow, Version};
+use babybench::mimo::{BodyFigures, BodyScores, Individual, Lms, StrengthRow, Version};
 use babybench::{Env, Model};
 
 /// Ages of the authors' figures, months.
@@ -106,6 +106,9 @@ pub fn write(out: &mut impl Write, env: &Env, age: f64) -> io::Result<()> {
         line("crown-rump length", sitting, age, None, "m")?;
         line("crown-rump over length", sitting / figures.stature, age, None, "")?;
     }
+    if let Some(head) = BodyFigures::head_circumference(model) {
+        line("head circumference", head, age, None, "m")?;
+    }
     if let Some(head) = geom_radius(model, "head") {
         line("radius of the head", head, age, Some(&HEAD_RADIUS), "m")?;
     }
@@ -117,7 +120,7 @@ pub fn write(out: &mut impl Write, env: &Env, age: f64) -> io::Result<()> {
             line(&format!("gear {name}"), gear, strength_age, row, "N m")?;
         }
     }
-    write_standards(out, figures, age)
+    write_standards(out, env)
 }
 
 /// Writes the greatest torques under both settings of `strength`, and their ratios to the torque of gravity.
@@ -141,20 +144,40 @@ pub fn write_strength(out: &mut impl Write, rows: &[StrengthRow]) -> io::Result<
     Ok(())
 }
 
-/// Writes where length and weight lie among infants of an age.
-fn write_standards(out: &mut impl Write, figures: BodyFigures, age: f64) -> io::Result<()> {
+/// Writes where length, weight and head circumference lie among infants of an age.
+fn write_standards(out: &mut impl Write, env: &Env) -> io::Result<()> {
+    let (model, config) = (env.model(), env.config());
+    if let Some(infant) = Individual::of(config) {
+        let Individual {
+            sex,
+            length_z,
+            weight_z,
+            head_z,
+        } = infant;
+        writeln!(
+            out,
+            "  this {sex} has z-scores {length_z:+.4} of length, {weight_z:+.4} of weight, {head_z:+.4} of head circumference"
+        )?;
+    }
+    let scores = BodyScores::of(model, config).map_err(io::Error::other)?;
+    let Some(first) = scores.first() else { return Ok(()) };
     writeln!(
         out,
-        "  among infants (WHO Child Growth Standards 2006): z-score, and -2, 0 and +2 standard deviations"
+        "  among infants ({}): z-score, and -2, 0 and +2 standard deviations",
+        first.standard.source
     )?;
-    for standard in GrowthStandard::at(age) {
-        let mut line = |what: &str, value: f64, lms: Lms, unit: &str| {
+    for score in &scores {
+        let standard = &score.standard;
+        let mut line = |what: &str, z: f64, lms: Lms, unit: &str| {
             let [low, middle, high] = [-2.0, 0.0, 2.0].map(|z| lms.value(z));
-            let (z, what) = (lms.z(value), format!("{what} of {}", standard.of));
-            writeln!(out, "  {what:27} {z:>+9.1}  {low:.1}, {middle:.1}, {high:.1} {unit}")
+            let what = format!("{what} of {}", standard.of);
+            // without the sign of a zero that was rounded
+            let z = (1e6 * z).round() / 1e6 + 0.0;
+            writeln!(out, "  {what:27} {z:>+9.6}  {low:.1}, {middle:.1}, {high:.1} {unit}")
         };
-        line("length", 100.0 * figures.stature, standard.length, "cm")?;
-        line("weight", figures.mass, standard.weight, "kg")?;
+        line("length", score.length, standard.length, "cm")?;
+        line("weight", score.weight, standard.weight, "kg")?;
+        line("head", score.head, standard.head, "cm")?;
     }
     Ok(())
 }

@@ -81,11 +81,18 @@ def _session(pynwb: Any, record: Record, start: Optional[datetime.datetime]) -> 
             subject_id="MIMo",
             description="A simulated infant by the model MIMo, in a body of the given age.",
             species="Homo sapiens",
-            sex="U",
+            **_individual(manifest.get("infant")),
             # without an age of its own the model is that of 18 months
             age=f"P{round((18 if months is None else months) * 30.4375)}D",
         ),
     )
+
+
+def _individual(infant: Optional[dict[str, Any]]) -> dict[str, str]:
+    """Returns sex and weight of the record's infant; those of a body by the formulas are unknown."""
+    if infant is None:
+        return {"sex": "U"}
+    return {"sex": {"boy": "M", "girl": "F"}[infant["sex"]], "weight": f"{infant['weight']:.3f} kg"}
 
 
 def _starts(record: Record) -> dict[int, float]:

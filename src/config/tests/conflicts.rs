@@ -167,3 +167,42 @@ fn keys_of_reflexes_that_are_off_are_refused() {
          `compat: api`",
     );
 }
+
+#[test]
+fn keys_of_an_individual_need_each_other_and_are_not_in_the_reference() {
+    check(
+        "age: 6\nsex: girl\nlength_z: 1\nweight_z: -0.5",
+        "age=6.0 sex=girl length_z=1.0 weight_z=-0.5",
+    );
+    check("age: 1\nsex: boy\ngestation: 30.5", "age=1.0 sex=boy gestation=30.5");
+    check(
+        "age: 1\nbody_random: 1\nbody_number: 7",
+        "age=1.0 body_random=1.0 body_number=7",
+    );
+    check_error(
+        "sex: boy",
+        ":1:6: `sex` is boy, but it changes MIMo at an age, and `age` is none; set `age`, 0 to 24 months",
+    );
+    let sex = "but the standards of growth are of boys or of girls; set `sex: boy` or `sex: girl`";
+    check_error("age: 6\nlength_z: 1", &format!(":2:11: `length_z` is 1.0, {sex}"));
+    check_error("age: 6\ngestation: 30", &format!(":2:12: `gestation` is 30.0, {sex}"));
+    check_error(
+        "age: 6\nbody_seed: 4",
+        ":2:12: `body_seed` is 4, but it chooses an infant of a population, and there is none; set `body_random` above 0",
+    );
+    check_error(
+        "age: 6\nsex: boy\nhead_z: 1\nhead_circumference: 44",
+        ":3:9: `head_z` is 1.0, but `head_circumference` sets the same length; leave one of the two out",
+    );
+    for key in ["sex: boy", "body_random: 0.5"] {
+        let (name, value) = key.split_once(": ").expect("a key");
+        check_error(
+            &format!("compat: reference\ntouch_active: off\nage: 6\n{key}"),
+            &format!(
+                ":4:{}: `{name}` is {value}, but the Python code that `compat: reference` follows does not have it; leave it out, or \
+                 set `compat: api`",
+                name.len() + 3
+            ),
+        );
+    }
+}

@@ -66,7 +66,7 @@ fn values(kind: KeyKind) -> Values {
                 .map(String::from)
                 .collect(),
             &["one", "true", "'1'", "None"],
-            ["-1", "2000000", ".nan"].map(String::from).into(),
+            [(min - 1.0).to_string(), "2000000".to_string(), ".nan".to_string()].into(),
         ),
         KeyKind::NoneOrWhole { min, max } => (
             ["none", "null", "~", "'none'"]
@@ -215,6 +215,8 @@ fn every_key_takes_what_it_says_and_nothing_else() {
                 }
                 ("Growth", "age_schedule") => "touch_active: false\n",
                 ("Growth", "age_grid") => "touch_active: false\nage_schedule: '0: 1, 9: 3'\n",
+                ("Growth", "length_z" | "weight_z" | "head_z" | "gestation") => "age: 3\nsex: boy\n",
+                ("Growth", "body_seed" | "body_number") => "age: 3\nbody_random: 1\n",
                 // the other keys of growth change MIMo at an age
                 ("Growth", _) => "age: 3\n",
                 ("Pain", _) => "pain_active: true\n",

@@ -48,6 +48,18 @@ impl Blueprint {
         Ok(shared.get_or_init(|| made).clone())
     }
 
+    /// Makes the look of the scene with the textures of another scene of the same assets, if there is one, and keeps it.
+    ///
+    /// # Errors
+    /// Textures that cannot be read.
+    pub(super) fn make_scenery(&self, like: Option<&Scenery>) -> Result<(), EnvError> {
+        if let (Some(like), None) = (like, self.surface.scenery.get()) {
+            let made = Scenery::sharing(&self.model, self.assets(), like)?;
+            self.surface.scenery.get_or_init(|| Arc::new(made));
+        }
+        self.scenery().map(drop)
+    }
+
     /// Creates the renderer that the configuration selects. On a GPU, environments of a blueprint share one.
     ///
     /// # Errors

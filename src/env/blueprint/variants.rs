@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use super::ages::AgeCache;
+use super::bodies::BodyCache;
 use super::settled::task_model;
 use super::surface::SkinAndScenery;
 use super::{Blueprint, SharedTables};
@@ -39,7 +39,7 @@ impl Blueprint {
             assets: scene_assets(&config, self.surface.given.clone())?,
             ..self.surface.clone()
         };
-        Ok(Self::settled(config, self.task.clone_task(), model, surface)?.keeping_ages())
+        Ok(Self::settled(config, self.task.clone_task(), model, surface)?.keeping_bodies())
     }
 
     /// Returns a blueprint of the same configuration in which MIMo makes another face. Snapshots of both are exchangeable.
@@ -57,8 +57,8 @@ impl Blueprint {
         let model = self.model.edited(|arrays| arrays.materials.clone_from(&made.materials));
         let blueprint = Self {
             config: Arc::new(config),
-            // those of other ages have the other face
-            ages: AgeCache::default(),
+            // other bodies have the other face
+            bodies: BodyCache::default(),
             ..self.clone()
         };
         blueprint.with_look(model)

@@ -20,18 +20,18 @@ pub(crate) fn blame(config: &Config, age: f64, reason: String, works: impl Fn(&C
     }
     let named = |key: &&Key| format!("`{}` is {}", key.name, key.value(config).to_yaml());
     let keys: Vec<String> = guilty.iter().map(named).collect();
-    let keys = if keys.is_empty() {
-        format!("`age` is {age:?}")
-    } else {
-        keys.join(", ")
+    let keys = match &keys[..] {
+        [] if config.individual.random > 0.0 => format!("`body_number` is {}", config.individual.number),
+        [] => format!("`age` is {age:?}"),
+        _ => keys.join(", "),
     };
     GrowthError::Measurements { keys, age, reason }
 }
 
-/// Lists the keys of measurements.
+/// Lists the keys of measurements and of z-scores.
 fn measurements() -> impl Iterator<Item = &'static Key> {
     let growth = Key::named("age").map(|key| key.section);
-    let lengths = ["circumference", "length", "breadth", "diameter"];
+    let lengths = ["circumference", "length", "breadth", "diameter", "_z"];
     let keys = Config::keys().iter();
     keys.filter(move |key| Some(key.section) == growth && lengths.iter().any(|length| key.name.ends_with(length)))
 }

@@ -10,6 +10,9 @@ pub(super) const SLACK: f64 = 1e-4;
 /// Height of the remaining stump of the neck, m.
 const NECK: f64 = 2e-6;
 
+/// Radius of the original head, m.
+pub(super) const HEAD_RADIUS: f64 = 0.0735;
+
 /// Adds the trunk, which follows the breadth of the hip; its heights have a factor. A separate chest takes the upper body's last geom
 /// and leaves a stump of a neck there.
 pub(super) fn trunk(now: &Lengths, base: &Lengths, has_chest: bool, stretch: Stretch, out: &mut BodyShapes) {
@@ -52,7 +55,7 @@ pub(super) fn trunk(now: &Lengths, base: &Lengths, has_chest: bool, stretch: Str
 
 /// Returns the radius of the head, m.
 fn head_radius(now: &Lengths, base: &Lengths) -> f64 {
-    0.0735 * (now.head_circumference / base.head_circumference)
+    HEAD_RADIUS * (now.head_circumference / base.head_circumference)
 }
 
 /// Adds the head with the eyes, which follow its circumference.

@@ -16,6 +16,18 @@ pub enum GrowthError {
         /// The requested age, months.
         age: f64,
     },
+    /// No standard covers the age of a preterm infant.
+    #[error("`{key}` is {age} and `gestation` is {gestation}, but {reason}")]
+    Preterm {
+        /// Key of the configuration.
+        key: &'static str,
+        /// The requested age, months.
+        age: f64,
+        /// Weeks of pregnancy.
+        gestation: f64,
+        /// Description of the gap, and the nearest age that is covered.
+        reason: String,
+    },
     /// Measurements make an impossible body.
     #[error("{keys}: at {age} months {reason}; change it, or leave it to the age")]
     Measurements {

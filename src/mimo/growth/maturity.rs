@@ -240,7 +240,7 @@ pub(super) fn without_side(actuator: &str) -> &str {
 }
 
 /// Returns the document of a MIMo with all motors and nothing else.
-fn bare_scene(version: Version) -> String {
+pub(super) fn bare_scene(version: Version) -> String {
     scene_xml(&Config {
         behavior: match version {
             Version::V1 => Behavior::None,

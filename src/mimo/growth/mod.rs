@@ -6,14 +6,19 @@
 //! that of gravity (`ratios`, `maturity`), and with `proportions: measured` trunk and legs those of infants (`proportions`). Below one month four of the curves fall steeply, so the
 //! proportions of a newborn are the least certain.
 //!
+//! An individual has the length, weight and head circumference of his z-scores (`builder`, `fit`): his head has its own factor, and two factors, on
+//! lengths and on girths, follow from length and weight.
+//!
 //! Source: MIMo's authors, arXiv 2509.09805 (ICDL 2025), and the code of their repository. Their model is MIMo 3, which has a chest; in
 //! MIMo 2 the chest's parts belong to the upper body. Its muscles keep their strength at all ages, as here for MIMo 3 under
 //! `compat: reference`; otherwise they follow the motors.
 
 mod blame;
 mod body;
+mod builder;
 mod error;
 mod fingers;
+mod fit;
 mod gravity;
 mod landmarks;
 mod leg_lengths;
@@ -27,6 +32,7 @@ mod sizes;
 mod strength;
 
 use super::error::SceneError;
+use super::preterm::Development;
 use super::sources::SourcedConstant;
 use super::third::CHEST;
 use super::{ROOT, Version};
@@ -34,12 +40,12 @@ use crate::assets::AssetSource;
 use crate::config::{Compat, Config, MAX_AGE, SpringModel, StrengthModel};
 use crate::mjcf_loader::Draft;
 pub(super) use blame::blame;
+use builder::BodyBuilder;
 pub use error::GrowthError;
 use lengths::Lengths;
 pub use maturity::StrengthRow;
 use maturity::{Maturity, without_side};
-use proportions::Stretch;
-use sizes::{Sizes, check, shapes};
+use sizes::Sizes;
 
 /// Radius of an eyeball of the original proportions, m, which is the distance of its camera from its centre.
 const EYEBALL: f64 = 0.01125;
@@ -55,53 +61,48 @@ pub struct Growth {
     gears_of_servos: bool,
     /// Whether muscles keep their strength.
     same_muscles: bool,
+    /// The age of the strength, months, corrected as that of the body.
     strength_age: f64,
     /// The strength of infants and springs by weight; `None` if the configuration requests neither.
     maturity: Option<Maturity>,
 }
 
 impl Growth {
-    /// Returns how a version of MIMo grows to the `age` of a configuration; `None` without an age.
+    /// Returns how a version of MIMo grows to the `age` of a configuration; `None` without an age. `assets` have the masses of his parts, by
+    /// which an individual gets his weight.
     ///
     /// # Errors
-    /// An age out of range, measurements that make a part vanish.
-    pub fn of(config: &Config, version: Version) -> Result<Option<Self>, GrowthError> {
+    /// An age out of range, measurements or z-scores that make a part vanish.
+    pub fn of(config: &Config, version: Version, assets: &dyn AssetSource) -> Result<Option<Self>, SceneError> {
         let Some(age) = config.age else { return Ok(None) };
         let strength_age = config.strength_age.unwrap_or(age);
         for (key, age) in [("age", age), ("strength_age", strength_age)] {
             if !(0.0..=MAX_AGE).contains(&age) {
-                return Err(GrowthError::Age { key, age });
+                return Err(GrowthError::Age { key, age }.into());
             }
         }
-        let base = Lengths::base();
         let has_chest = config.mimo_version == CHEST;
-        let now = Lengths::new(age, &config.measurements);
-        let grown = |age: f64, config: &Config| {
-            let lengths = Lengths::new(age, &config.measurements);
-            let stretch = Stretch::of(config.proportions, age, &lengths, &base);
-            let shapes = shapes(version, has_chest, &lengths, &base, stretch);
-            check(&shapes).map(|()| shapes)
-        };
-        let made = |age: f64| {
-            grown(age, config).map_err(|reason| blame(config, age, reason, |other| grown(age, other).is_ok()))
-        };
-        let (body, strong) = (made(age)?, made(strength_age)?);
+        let builder = BodyBuilder::new(config, version, has_chest, assets)?;
+        let developed = Development::of(config, "age", age)?;
+        let strengthened = Development::of(config, "strength_age", strength_age)?;
+        let body = builder.body(config, age, &developed)?;
+        let strong = builder.body(config, strength_age, &strengthened)?;
         let camera = match config.compat {
-            Compat::Api => EYEBALL * now.head_circumference / base.head_circumference,
+            Compat::Api => EYEBALL * body.lengths.head_circumference / builder.base.head_circumference,
             Compat::Reference => EYEBALL, // where it was, outside a newborn's eye
         };
         Ok(Some(Self {
             age,
             sizes: Sizes {
                 version,
-                body,
-                strong,
+                body: body.shapes,
+                strong: strong.shapes,
                 camera,
             },
             has_chest,
             gears_of_servos: config.compat == Compat::Reference,
             same_muscles: has_chest && config.compat == Compat::Reference,
-            strength_age,
+            strength_age: strengthened.months,
             maturity: None,
         }))
     }
@@ -184,6 +185,11 @@ impl Growth {
         }
         Ok(())
     }
+}
+
+/// Returns the head circumference, cm, of a head whose geom has this radius, m.
+pub(super) fn head_circumference(radius: f64) -> f64 {
+    Lengths::head_circumference_of(radius)
 }
 
 /// Lists the constants of strength and proportions.

@@ -1,5 +1,6 @@
 //! Lengths of trunk and legs as in infants, within the stature that the authors' formulas give.
 
+use super::body::HEAD_RADIUS;
 use super::leg_lengths::leg;
 use super::lengths::Lengths;
 use crate::config::Proportions;
@@ -21,22 +22,20 @@ pub(super) struct Stretch {
 }
 
 impl Stretch {
-    /// No change.
-    pub const NONE: Self = Self { trunk: 1.0, leg: 1.0 };
-
-    /// Returns the factors at an age: the crown-rump length becomes that of infants, and the stature stays.
+    /// Returns the factors at an age: the crown-rump length becomes that of infants, and the stature stays. `trunk` is the factor on heights
+    /// in the trunk, relative to its breadth, by which the stature is counted.
     ///
     /// The numbers are those of [`super::body`]: heights of the original body over hip breadth, head circumference and legs.
-    pub fn of(proportions: Proportions, age: f64, now: &Lengths, base: &Lengths) -> Self {
+    pub fn of(proportions: Proportions, age: f64, now: &Lengths, base: &Lengths, trunk: f64) -> Self {
         if proportions == Proportions::Mimo {
-            return Self::NONE;
+            return Self { trunk, leg: 1.0 };
         }
         let breadth = now.hip_breadth / base.hip_breadth;
-        let head = 2.0 * 0.0735 * now.head_circumference / base.head_circumference;
+        let head = 2.0 * HEAD_RADIUS * now.head_circumference / base.head_circumference;
         let [thigh, calf, foot] = leg(now, base);
         let leg = thigh + calf;
         // the hip's joint is 7 mm above that of the legs, the trunk's geoms end 48 mm times the breadth below it
-        let stature = 0.298 * breadth + head + 0.007 + leg + foot;
+        let stature = 0.298 * (breadth * trunk) + head + 0.007 + leg + foot;
         let sitting = crown_rump(age) * stature;
         let trunk = (sitting - head - 0.048 * breadth) / 0.293;
         Self {

@@ -131,7 +131,7 @@ pub(super) fn check(shapes: &BodyShapes) -> Result<(), String> {
 }
 
 /// Returns the names of a part, and whether each is the mirror image.
-fn sides(side: Side, name: &str) -> impl Iterator<Item = (String, bool)> {
+pub(super) fn sides(side: Side, name: &str) -> impl Iterator<Item = (String, bool)> {
     let names = match side {
         Side::Middle => [Some((name.to_string(), false)), None],
         Side::Both => [

@@ -6,10 +6,10 @@ use serde::{Deserialize, Serialize};
 
 use super::RecordError;
 use super::rows::MODEL;
-use crate::config::Part;
+use crate::config::{Part, Sex};
 use crate::env::{Env, PartNames};
 use crate::formats::npz::NpzWriter;
-use crate::mimo::{MimoBodies, body_kind};
+use crate::mimo::{BodyFigures, Individual, MimoBodies, body_kind};
 use crate::model::Model;
 
 /// One of MIMo's joints.
@@ -21,6 +21,42 @@ pub struct JointDescription {
     pub qpos: usize,
     /// Its index into `qvel`.
     pub dof: usize,
+}
+
+/// An infant who differs from others of his age.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct InfantDescription {
+    /// Boy or girl.
+    pub sex: Sex,
+    /// The z-score of his length.
+    pub length_z: f64,
+    /// The z-score of his weight.
+    pub weight_z: f64,
+    /// The z-score of his head circumference.
+    pub head_z: f64,
+    /// His length, m.
+    pub length: f64,
+    /// His weight, kg.
+    pub weight: f64,
+    /// The circumference of his head, m.
+    pub head_circumference: f64,
+}
+
+impl InfantDescription {
+    /// Describes the infant of an environment as its record begins; `None` if he is no individual.
+    pub(super) fn of(env: &Env) -> Option<Self> {
+        let infant = Individual::of(env.config())?;
+        let figures = BodyFigures::of(env.model())?;
+        Some(Self {
+            sex: infant.sex,
+            length_z: infant.length_z,
+            weight_z: infant.weight_z,
+            head_z: infant.head_z,
+            length: figures.stature,
+            weight: figures.mass,
+            head_circumference: BodyFigures::head_circumference(env.model())?,
+        })
+    }
 }
 
 /// A geom of the scene.

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 
 use super::RecordOptions;
-use super::describe::{GeomDescription, JointDescription, geoms, limb_joints, meaning};
+use super::describe::{GeomDescription, InfantDescription, JointDescription, geoms, limb_joints, meaning};
 use crate::config::Config;
 use crate::env::Env;
 use crate::sensors::EYES;
@@ -33,6 +33,9 @@ pub struct Manifest {
     pub policy: String,
     /// The configuration, including the seed.
     pub configuration: Config,
+    /// The infant, if the configuration describes an individual.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub infant: Option<InfantDescription>,
     /// Simulated time of a step, s.
     pub dt: f64,
     /// Vertical field of view of MIMo's eyes, degrees; that of the left one if they differ; none if he has no eyes.
@@ -84,6 +87,9 @@ pub struct EpisodeDescription {
     /// MIMo's age in months, if it was not that of the configuration; null for the original proportions.
     #[serde(default, skip_serializing_if = "Option::is_none", with = "other_age")]
     pub age: Option<Option<f64>>,
+    /// The number of the infant in the population of the configuration, if it was not the configuration's.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub body_number: Option<u64>,
     /// Whether the record was written before the episode ended; its end may then not be the end of the episode.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub unfinished: bool,
@@ -115,6 +121,7 @@ impl Manifest {
             platform: format!("{} {}", std::env::consts::ARCH, std::env::consts::OS),
             policy: options.policy.clone(),
             configuration: env.config().clone(),
+            infant: InfantDescription::of(env),
             dt: blueprint.dt(),
             fovy: left,
             fovy_right: right.filter(|_| right != left),

@@ -118,9 +118,14 @@ impl Record {
         Ok(env)
     }
 
-    /// Sets the age and the changed numbers of an episode in an environment.
+    /// Sets the infant, his age and the changed numbers of an episode in an environment.
     fn become_of(&self, episode: u64, npz: &Npz, env: &mut Env) -> Result<(), RecordError> {
         let described = self.manifest.episodes.iter().find(|e| e.episode == episode);
+        let number = described.and_then(|e| e.body_number);
+        let number = number.unwrap_or(self.manifest.configuration.individual.number);
+        if env.config().individual.number != number {
+            env.mimo_mut().set_body_number(number)?;
+        }
         let age = described.and_then(|e| e.age).unwrap_or(self.manifest.configuration.age);
         if env.config().age != age {
             if env.grows() {
