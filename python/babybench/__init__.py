@@ -62,6 +62,7 @@ _HOMES = {
     "View": "babybench_core.view",
     "make": "babybench_core.env",
     "pettingzoo": "babybench.pettingzoo",
+    "protocol": "babybench.protocol",
     "read_config": "babybench_core.scenes",
     "sb3": "babybench.sb3",
     "view": "babybench_core.view",
@@ -75,7 +76,7 @@ def __getattr__(name: str) -> Any:
     from importlib import import_module
 
     home = import_module(_HOMES[name])
-    return home if name in ("data", "figures", "pettingzoo", "sb3") else getattr(home, name)
+    return home if name in ("data", "figures", "pettingzoo", "protocol", "sb3") else getattr(home, name)
 
 
 def __dir__() -> list[str]:

@@ -42,7 +42,10 @@ __all__ = [
     "movement_of_record",
     "paint",
     "play_senses",
+    "protocol_description",
+    "protocol_names",
     "replay_record",
+    "run_protocol",
     "scene_file",
     "set_equalities",
     "spread_linear",
@@ -94,6 +97,26 @@ def movement_of_record(
     frame: str,
 ) -> str:
     """Returns measures of the movements in an episode of a record, or the means of all, as JSON."""
+
+def protocol_names() -> list[str]:
+    """Returns the names of the protocols of the library."""
+
+def protocol_description(name: str) -> str:
+    """Returns a protocol as JSON."""
+
+def run_protocol(
+    name: str,
+    out: str | os.PathLike[str],
+    policies: list[str],
+    ages: list[float] | None,
+    seeds: int,
+    length: float,
+    keys: str,
+    jobs: int | None,
+    keep_records: bool,
+    policy_timeout: float,
+) -> str:
+    """Runs a protocol into a folder and returns the results as JSON."""
 
 def play_senses(
     env: Env,

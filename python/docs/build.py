@@ -24,6 +24,7 @@ MODULES = (
     "babybench.eval",
     "babybench.figures",
     "babybench.mujoco",
+    "babybench.protocol",
     "babybench.utils",
     "babybench_core.env",
     "babybench_core.vector",

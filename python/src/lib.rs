@@ -27,6 +27,7 @@ mod physics_model;
 mod physics_options;
 mod physics_shapes;
 mod pictures;
+mod protocol;
 mod record;
 mod recycled;
 mod rows;
@@ -66,6 +67,8 @@ mod _native {
     use super::physics_data::{PhysicsData, PhysicsRenderer};
     #[pymodule_export]
     use super::physics_model::PhysicsModel;
+    #[pymodule_export]
+    use super::protocol::{protocol_description, protocol_names, run_protocol};
     #[pymodule_export]
     use super::record::{Folder, Recorder, measure_record, movement_of_record, play_senses, replay_record};
     #[pymodule_export]

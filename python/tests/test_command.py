@@ -29,6 +29,7 @@ COMMANDS = (
     "evaluate",
     "measure",
     "benchmark",
+    "protocol",
     "pack",
 )
 COMMAND = [sys.executable, "-m", "babybench"]

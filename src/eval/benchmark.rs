@@ -8,8 +8,6 @@ mod table;
 use std::io;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
-use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
-use std::sync::{Mutex, PoisonError};
 use std::time::Duration;
 
 pub use job::{BenchmarkJob, RunResult};
@@ -20,6 +18,7 @@ pub use table::{BenchmarkRow, Metric};
 use thiserror::Error;
 
 use super::EpisodeError;
+use super::side_by_side::side_by_side;
 use crate::config::ConfigError;
 use crate::env::EnvError;
 use crate::files::replace_file;
@@ -166,38 +165,4 @@ fn env_error(episode: u64) -> impl Fn(EnvError) -> EpisodeError {
 /// Names the error of a policy.
 fn policy_error(error: PolicyError) -> EpisodeError {
     EpisodeError::Policy(error)
-}
-
-/// Runs all jobs in threads, and returns the existing results, in the order of the jobs, with the first error. After an error no job is
-/// started.
-fn side_by_side(
-    all: &[BenchmarkJob],
-    threads: usize,
-    run: impl Fn(&BenchmarkJob) -> Result<RunResult, BenchmarkError> + Sync,
-) -> (Vec<RunResult>, Result<(), BenchmarkError>) {
-    let (next, failed) = (AtomicUsize::new(0), AtomicBool::new(false));
-    let found: Mutex<Vec<Option<RunResult>>> = Mutex::new(vec![None; all.len()]);
-    let work = || -> Result<(), BenchmarkError> {
-        while !failed.load(Ordering::Relaxed) {
-            let number = next.fetch_add(1, Ordering::Relaxed);
-            let Some(job) = all.get(number) else {
-                break;
-            };
-            let result = run(job);
-            failed.fetch_or(result.is_err(), Ordering::Relaxed);
-            let mut found = found.lock().unwrap_or_else(PoisonError::into_inner);
-            found[number] = Some(result?);
-        }
-        Ok(())
-    };
-    let results: Vec<Result<(), BenchmarkError>> = std::thread::scope(|scope| {
-        let threads: Vec<_> = (0..threads.clamp(1, all.len().max(1)))
-            .map(|_| scope.spawn(work))
-            .collect();
-        // a panic in a run reaches the caller, as without threads
-        let join = |t: std::thread::ScopedJoinHandle<'_, _>| t.join().unwrap_or_else(|e| std::panic::resume_unwind(e));
-        threads.into_iter().map(join).collect()
-    });
-    let runs = found.into_inner().unwrap_or_else(PoisonError::into_inner);
-    (runs.into_iter().flatten().collect(), results.into_iter().collect())
 }

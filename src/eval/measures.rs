@@ -3,12 +3,14 @@
 
 mod movement;
 mod regards;
+mod surroundings;
 mod touches;
 
 use std::collections::BTreeMap;
 
 use movement::{smoothness, symmetry};
 use serde::{Deserialize, Serialize};
+pub(super) use surroundings::Surroundings;
 use touches::{TouchBouts, TouchSteps};
 
 use crate::env::PerEyeAndHand;

@@ -49,7 +49,11 @@ mod measures;
 pub mod movement;
 #[cfg(feature = "npz")]
 mod pack;
+#[cfg(feature = "npz")]
+pub mod protocol;
 mod scores;
+#[cfg(feature = "npz")]
+mod side_by_side;
 
 #[cfg(feature = "npz")]
 pub use benchmark::{

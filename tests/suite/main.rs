@@ -36,6 +36,8 @@ mod plain_models;
 #[cfg(feature = "eval")]
 mod policies;
 mod populations;
+#[cfg(all(feature = "eval", feature = "npz"))]
+mod protocols;
 mod public_models;
 #[cfg(feature = "rapier")]
 mod rapier_engine;

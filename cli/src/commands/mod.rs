@@ -9,6 +9,7 @@ mod keys;
 mod many;
 mod measure;
 mod pack;
+mod protocol;
 mod record;
 mod render;
 mod replay;
@@ -67,6 +68,8 @@ pub enum Command {
     Replay(replay::ReplayArgs),
     /// Run a benchmark: configurations, policies and seeds of a plan, on all cores, with means and intervals
     Benchmark(benchmark::BenchmarkArgs),
+    /// Run an experiment with infants, and print what MIMo does beside published numbers: list, show, run
+    Protocol(protocol::ProtocolArgs),
     /// Measure what the hands touched, and how MIMo moved, in a record
     Measure(measure::MeasureArgs),
     /// Record what MIMo would feel and see in a motion: joint angles over time, from a video or a motion capture
@@ -225,6 +228,7 @@ impl Command {
             Self::View(c) => c.run(),
             Self::Replay(c) => c.run(),
             Self::Benchmark(c) => c.run(),
+            Self::Protocol(c) => c.run(),
             Self::Measure(c) => c.run(),
             Self::Senses(c) => c.run(),
             Self::TestInstallation(c) => c.run(),

@@ -44,7 +44,7 @@ export const sidebar = [
   },
   {
     text: "Experiments",
-    items: items("guide", { benchmark: "Records, measures, benchmarks", movement: "Measures of movement", motions: "Motions", cluster: "What an hour buys" }),
+    items: items("guide", { benchmark: "Records, measures, benchmarks", movement: "Measures of movement", protocols: "Protocols", motions: "Motions", cluster: "What an hour buys" }),
   },
   {
     text: "Reference",
@@ -54,7 +54,7 @@ export const sidebar = [
     text: "Results",
     collapsed: true,
     items: [
-      ...items("results", { benchmark: "Baselines of self-touch", policies: "Trained policies" }),
+      ...items("results", { benchmark: "Baselines of self-touch", protocols: "Experiments beside infants", policies: "Trained policies" }),
       ...items("guide", { distance: "Distance to MuJoCo", speed: "Speed" }),
       ...items("results", {
         worlds: "Public models",

@@ -1,6 +1,6 @@
 //! The touches in a record.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use crate::formats::npz::{Npz, NpzError};
 use crate::runs::{GeomDescription, Manifest};
@@ -15,6 +15,8 @@ pub(super) struct TouchStep {
     regions: [Vec<usize>; 2],
     pub hand_to_hand: bool,
     pub double_touch: bool,
+    /// Whether the right and the left hand touch something that is not MIMo's.
+    pub outside: [bool; 2],
 }
 
 /// The touches of an episode, step by step.
@@ -23,6 +25,8 @@ pub(super) struct TouchSteps {
     steps: Vec<TouchStep>,
     /// Names of regions, seen from the hand that touches them.
     names: Vec<String>,
+    /// Bodies of MIMo that a hand touches.
+    pub bodies: BTreeSet<String>,
 }
 
 /// Returns which hand a geom belongs to, 0 right or 1 left, with its fingers.
@@ -78,10 +82,13 @@ impl TouchSteps {
     }
 
     fn touch(&mut self, step: &mut TouchStep, a: &GeomDescription, b: &GeomDescription) {
+        let hands = (hand_of(a), hand_of(b));
         if a.region.is_none() || b.region.is_none() {
+            for hand in [hands.0, hands.1].into_iter().flatten() {
+                step.outside[hand] = true;
+            }
             return;
         }
-        let hands = (hand_of(a), hand_of(b));
         // a hand that touches itself, with its fingers, does not touch the body
         if hands.0.is_some() && hands.0 == hands.1 {
             return;
@@ -89,6 +96,9 @@ impl TouchSteps {
         step.double_touch |= hands.0.is_some() || hands.1.is_some();
         step.hand_to_hand |= hands.0.is_some() && hands.1.is_some();
         for (hand, other) in [(hands.0, b), (hands.1, a)] {
+            if hand.is_some() {
+                self.bodies.insert(other.body.clone());
+            }
             if let Some((hand, name)) = hand.and_then(|hand| Some((hand, region_of(other, hand)?))) {
                 let region = self.names.iter().position(|known| *known == name).unwrap_or_else(|| {
                     self.names.push(name);
@@ -117,6 +127,11 @@ impl TouchSteps {
     /// Returns the steps in which a hand touches the body.
     pub fn any(&self, hand: usize) -> Vec<bool> {
         self.steps.iter().map(|step| !step.regions[hand].is_empty()).collect()
+    }
+
+    /// Returns the steps in which a hand touches something that is not MIMo's.
+    pub fn outside(&self, hand: usize) -> Vec<bool> {
+        self.steps.iter().map(|step| step.outside[hand]).collect()
     }
 
     /// Returns, for each region that a hand touches, the steps in which it does.
