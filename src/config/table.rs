@@ -173,12 +173,12 @@ config! {
         proportions: Proportions = Proportions::Mimo, Choice(Proportions::NAMES), "The source of MIMo's proportions." + "`mimo` are the authors' formulas, `measured` keeps their length and divides it between trunk and legs as in infants.";
         touch_grows: bool = false, Bool, "Touch sensors keep their number and move with the body, instead of keeping their spacing.";
         @group individual: IndividualOptions, "How MIMo differs from other infants of his age (`sex`, `length_z` ...).", "How an infant differs from others of his age, by the standards of growth." {
-            sex as sex: Sex = Sex::None, Choice(Sex::NAMES), "The sex of a MIMo with the length, weight and head circumference of the standards of growth; none for the formulas of MIMo's authors.";
+            sex as sex: Sex = Sex::None, Choice(Sex::NAMES), "The sex by whose growth standards MIMo is sized; none for the authors' formulas.";
             length_z as length_z: Option<f64> = None, SCORE, "The z-score of his length among infants of his sex and age; none for 0, the median.";
             weight_z as weight_z: Option<f64> = None, SCORE, "The z-score of his weight among infants of his sex and age; none for 0, the median.";
             head_z as head_z: Option<f64> = None, SCORE, "The z-score of his head circumference among infants of his sex and age; none for 0, the median.";
             gestation as gestation: Option<f64> = None, WEEKS, "The weeks of pregnancy at his birth, from which `age` counts; none for a birth at term.";
-            random as body_random: f64 = 0.0, SPREAD, "Standard deviation of the z-scores of an infant drawn from a population, 1 for that of the standards; 0 draws nothing.";
+            random as body_random: f64 = 0.0, SPREAD, "Standard deviation of the z-scores of a drawn infant, 1 as in the standards; 0 draws none.";
             seed as body_seed: u64 = 0, SEED, "The seed of the population of `body_random`.";
             number as body_number: u64 = 0, PLACE, "The number of the infant in the population; row i of a vector has the i-th after him.";
         }
