@@ -176,6 +176,9 @@ class Blueprint:
     ) -> Blueprint:
         """Compiles a scene. A ``str`` is the path of a YAML file; ``assets`` is a folder laid out like the kit's."""
 
+    def with_body_number(self, number: int) -> Blueprint:
+        """Compiles the scene with another infant of the configuration's population. Both share textures."""
+
     @staticmethod
     def by_hand(
         config: Mapping[str, object] | str | os.PathLike[str],

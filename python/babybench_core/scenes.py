@@ -24,6 +24,8 @@ class UnexpectedKeyword(TypeError, ValueError):
 
 
 _shared: WeakValueDictionary[tuple[object, ...], Blueprint] = WeakValueDictionary()
+_populations: WeakValueDictionary[tuple[object, ...], Blueprint] = WeakValueDictionary()
+"""The infant made last of each population that environments use."""
 
 
 def read_config(config: ConfigLike = None, **keys: object) -> dict[str, Any]:
@@ -91,8 +93,17 @@ def blueprint(config: Mapping[str, object], assets: Optional[Union[str, os.PathL
         return Blueprint(full, where)
     found = _shared.get(key)
     if found is None:
-        found = _shared[key] = Blueprint(full, where)
+        found = _shared[key] = _infant(full, where) if full["body_random"] else Blueprint(full, where)
     return found
+
+
+def _infant(full: dict[str, Any], where: Optional[str]) -> Blueprint:
+    """Compiles a scene with an infant of a population, from the scene of another of them if there is one."""
+    population = (repr({**full, "body_number": 0}), where)
+    other = _populations.get(population)
+    made = Blueprint(full, where) if other is None else other.with_body_number(full["body_number"])
+    _populations[population] = made
+    return made
 
 
 def camera_of(blueprint: Blueprint, camera: Optional[str]) -> str:

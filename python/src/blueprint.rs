@@ -70,6 +70,12 @@ impl Blueprint {
         Ok(Self { inner })
     }
 
+    /// Compiles the scene with another infant of the configuration's population. Both share textures.
+    fn with_body_number(&self, py: Python<'_>, number: u64) -> PyResult<Self> {
+        let inner = detached(py, || self.inner.with_body_number(number))?;
+        Ok(Self { inner })
+    }
+
     /// Compiles a document, by default the configuration's, for a program that composes its own resets and steps.
     #[staticmethod]
     #[pyo3(signature = (config, document=None, version="v1", folder=PathBuf::new(), files=HashMap::new(), touch_spacing=Vec::new(), assets=None))]

@@ -85,24 +85,25 @@ const LISTED: [f64; 5] = [0.0, 3.0, 6.0, 12.0, 24.0];
 
 /// Lists medians of the standards.
 pub(super) fn constants() -> Vec<SourcedConstant> {
-    let kinds: [(&str, &str, fn(&GrowthStandard) -> Lms); 3] = [
-        ("length", "cm", |of| of.length),
-        ("weight", "kg", |of| of.weight),
-        ("head circumference", "cm", |of| of.head),
+    let both = |what: &str, unit, pick: fn(&GrowthStandard) -> Lms| {
+        [0, 1].map(|sex| {
+            let of = |age: f64| GrowthStandard::at(age)[sex];
+            SourcedConstant {
+                name: format!("median {what} of {}", of(0.0).of),
+                values: LISTED.map(|age| pick(&of(age)).m).to_vec(),
+                ages: LISTED.to_vec(),
+                unit,
+                source: "WHO Child Growth Standards 2006 and 2007, tables of whole months with L, M and S",
+                mark: Mark::Read,
+            }
+        })
+    };
+    let all = [
+        both("length", "cm", |of| of.length),
+        both("weight", "kg", |of| of.weight),
+        both("head circumference", "cm", |of| of.head),
     ];
-    let each = kinds.into_iter().flat_map(|kind| [(kind, 0), (kind, 1)]);
-    each.map(|((what, unit, pick), sex)| {
-        let of = |age: f64| GrowthStandard::at(age)[sex];
-        SourcedConstant {
-            name: format!("median {what} of {}", of(0.0).of),
-            values: LISTED.map(|age| pick(&of(age)).m).to_vec(),
-            ages: LISTED.to_vec(),
-            unit,
-            source: "WHO Child Growth Standards 2006 and 2007, tables of whole months with L, M and S",
-            mark: Mark::Read,
-        }
-    })
-    .collect()
+    all.into_iter().flatten().collect()
 }
 
 /// Interpolates in a table of whole months.

@@ -90,7 +90,13 @@ fn each(env: &Env, layout: &RowLayout, options: &VectorOptions) -> u64 {
         .senses()
         .touch()
         .map_or(0, |touch| 24_000 + 7 * touch.layout().len());
-    (rows + state + computed + skin + env.transform_memory()) as u64
+    // each infant of a population has a model, a skin and a look of his own
+    let body = if env.config().individual.random > 0.0 {
+        48_000 * model.ngeom()
+    } else {
+        0
+    };
+    (rows + state + computed + skin + body + env.transform_memory()) as u64
 }
 
 /// Returns the memory available from the system and the container, bytes, if they report it.

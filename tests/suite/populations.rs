@@ -1,10 +1,11 @@
 //! Populations of infants: in vectors, while they grow, in snapshots and in records.
 
+use std::sync::Arc;
 use std::time::Instant;
 
 use babybench::config::{AgeSchedule, Behavior, Scene, Sex};
 use babybench::mimo::{BodyFigures, BodyScores, Individual};
-use babybench::{AutoresetMode, Config, VectorEnv, VectorOptions};
+use babybench::{AutoresetMode, Blueprint, Config, VectorEnv, VectorOptions};
 
 use crate::common::*;
 
@@ -84,6 +85,21 @@ fn a_hundred_infants_of_one_seed_differ_and_are_the_same_again() {
     }
 }
 
+/// A body that was needed among the last 128 is kept, and others are compiled again with the same bits.
+#[test]
+fn as_many_bodies_are_kept_as_a_vector_usually_has() {
+    let first = blueprint(population(3.0));
+    let infant = |number| first.with_body_number(number).expect("an infant");
+    let same = |a: &Blueprint, b: &Blueprint| Arc::ptr_eq(a.model(), b.model());
+    let one = infant(1);
+    assert!(same(&one, &infant(1)) && same(&first, &infant(0)));
+    (2..128).for_each(|number| drop(infant(number)));
+    assert!(same(&one, &infant(1)));
+    (128..257).for_each(|number| drop(infant(number)));
+    let again = infant(1);
+    assert!(!same(&one, &again) && one.model().body_mass == again.model().body_mass);
+}
+
 #[test]
 fn z_scores_stay_while_he_grows() {
     let mut config = Config {
@@ -132,14 +148,24 @@ fn infants_whose_skins_differ_say_what_makes_them_equal() {
         ..population(6.0)
     };
     let result = VectorEnv::new(&blueprint(config.clone()), 4, VectorOptions::default());
-    let error = result.err().expect("they differ").to_string();
+    let error = result.expect_err("they differ").to_string();
     assert!(error.contains("touch_grows"), "{error}");
     let equal = Config {
         touch_grows: true,
         ..config
     };
-    let mut envs = VectorEnv::new(&blueprint(equal), 4, VectorOptions::default()).expect("equal skins");
+    let equal = blueprint(equal);
+    let mut envs = VectorEnv::new(&equal, 4, VectorOptions::default()).expect("equal skins");
     envs.reset(0).expect("no divergence");
+    // the bodies count, before any is compiled
+    let small = VectorOptions {
+        max_memory: Some(1 << 30),
+        ..VectorOptions::default()
+    };
+    let error = VectorEnv::new(&equal, 1_000_000, small)
+        .expect_err("too many")
+        .to_string();
+    assert!(error.contains("use at most"), "{error}");
 }
 
 #[cfg(all(feature = "eval", feature = "npz"))]
