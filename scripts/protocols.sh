@@ -18,7 +18,7 @@ mkdir -p docs/protocols
   echo '# Experiments beside infants'
   echo
   echo "All [protocols](guide/protocols.md) with held noise and with the coloured noise of MIMo's age, at $length of their length, from $seeds seeds; commit"
-  echo "$commit. Noise does not sit up, learn or roll over: these tables say what chance gives, and policies are compared with them."
+  echo "$commit. Noise wants nothing: these tables say what chance gives, and other policies can be compared with them."
   echo "\`scripts/protocols.sh\` makes this page."
 } > "$folder/page.md"
 for name in $("$program" protocol list | cut -d ' ' -f 1); do

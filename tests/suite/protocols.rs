@@ -208,6 +208,12 @@ fn a_yoked_mobile_repeats_another_infants() {
     );
     assert!(span > 0.01 && far(&mobile, &repeated) < 0.25 * span);
     assert!(far(&knee, &other) > 0.1, "the other infant moves as he likes");
+    // a time until he learns is that of nine minutes
+    let waits = result
+        .comparisons
+        .iter()
+        .filter(|c| c.missing == "needs the whole length");
+    assert_eq!(waits.count(), 3);
     // the task's own counter agrees with the parts of the record
     let info = &own.manifest().episodes.last().expect("episodes").info;
     let counted = info["right_foot_movements_reinforcement"].as_f64().expect("a counter");

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::table::rounded;
-use super::{MeasureRule, Protocol, ProtocolRow, ProtocolRun, PublishedRow};
+use super::{MeasureRule, Protocol, ProtocolPlan, ProtocolRow, ProtocolRun, PublishedRow};
 use crate::eval::ConfidenceInterval;
 
 /// A published row beside the number of a policy.
@@ -64,14 +64,17 @@ impl Difference {
 /// Compares every published row with the rows of every policy.
 pub(super) fn compare(
     protocol: &Protocol,
+    plan: &ProtocolPlan,
     rows: &[ProtocolRow],
     runs: &[ProtocolRun],
-    policies: &[String],
 ) -> Vec<Comparison> {
     let mut out = Vec::new();
     for published in &protocol.published {
-        for policy in policies {
-            let found = ours(protocol, published, policy, rows, runs);
+        for policy in &plan.policies {
+            let found = match whole(protocol, plan, published) {
+                true => ours(protocol, published, policy, rows, runs),
+                false => Err("needs the whole length"),
+            };
             let (ours, missing) = match found {
                 Ok(interval) => (Some(interval), String::new()),
                 Err(reason) => (None, reason.to_string()),
@@ -86,6 +89,17 @@ pub(super) fn compare(
         }
     }
     out
+}
+
+/// Returns whether the phases were long enough for the measure of a row: the time until something happens is not that of a shorter phase.
+fn whole(protocol: &Protocol, plan: &ProtocolPlan, published: &PublishedRow) -> bool {
+    let measure = published.measure.as_deref().and_then(|name| protocol.measure(name));
+    let waits = measure.is_some_and(|measure| matches!(measure.rule, MeasureRule::Reached { .. }));
+    !waits
+        || protocol
+            .phases
+            .iter()
+            .all(|phase| plan.seconds(protocol, phase.seconds) == phase.seconds)
 }
 
 /// Returns the number beside a published row, or the reason why there is none.

@@ -132,7 +132,7 @@ impl Protocol {
         }
         let rows = rows(self, &runs);
         Ok(ProtocolResult {
-            comparisons: compare(self, &rows, &runs, &plan.policies),
+            comparisons: compare(self, plan, &rows, &runs),
             protocol: self.clone(),
             plan: plan.clone(),
             babybench: env!("CARGO_PKG_VERSION").to_string(),
