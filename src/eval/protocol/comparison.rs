@@ -54,9 +54,10 @@ impl Difference {
         more.extend(self.relative.map(|share| format!("{:+.0} %", 100.0 * share)));
         more.extend(self.deviations.map(|sd| format!("{sd:+.1} SD")));
         let absolute = format!("{} {unit}", rounded(format!("{:+.decimals$}", self.absolute)));
-        match more.is_empty() {
-            true => absolute.trim_end().to_string(),
-            false => format!("{} ({})", absolute.trim_end(), more.join(", ")),
+        if more.is_empty() {
+            absolute.trim_end().to_string()
+        } else {
+            format!("{} ({})", absolute.trim_end(), more.join(", "))
         }
     }
 }
@@ -71,9 +72,10 @@ pub(super) fn compare(
     let mut out = Vec::new();
     for published in &protocol.published {
         for policy in &plan.policies {
-            let found = match whole(protocol, plan, published) {
-                true => ours(protocol, published, policy, rows, runs),
-                false => Err("needs the whole length"),
+            let found = if whole(protocol, plan, published) {
+                ours(protocol, published, policy, rows, runs)
+            } else {
+                Err("needs the whole length")
             };
             let (ours, missing) = match found {
                 Ok(interval) => (Some(interval), String::new()),

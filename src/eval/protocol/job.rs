@@ -181,9 +181,7 @@ impl Folder {
     fn new(path: PathBuf, keep: bool) -> Result<Self, ProtocolError> {
         // what a run that was broken off has left
         match std::fs::remove_dir_all(&path) {
-            Err(source) if source.kind() != std::io::ErrorKind::NotFound => {
-                return Err(ProtocolError::Io { path, source });
-            }
+            Err(source) if source.kind() != std::io::ErrorKind::NotFound => Err(ProtocolError::Io { path, source }),
             _ => Ok(Self { path, keep }),
         }
     }
