@@ -116,7 +116,7 @@ fn wrong_arguments_say_what_is_expected() {
         (&["run", "kick", "--seeds", "0"], 2, "whole number of at least 1"),
         (&["run", "kick", "--set", "strength"], 2, "expected KEY=VALUE"),
         (
-            &["run", "kick", "--set", "strenth=infant"],
+            &["run", "kick", "--set", "strengths=infant"],
             1,
             "did you mean `strength`",
         ),

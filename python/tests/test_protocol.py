@@ -51,7 +51,7 @@ def test_what_is_refused(tmp_path: Path):
         ({"seeds": 0}, "seeds is 0"),
         ({"ages": [30]}, "from 0 to 24"),
         ({"policies": []}, "policies is"),
-        ({"strenght": "infant"}, "did you mean `strength`"),
+        ({"strengths": "infant"}, "did you mean `strength`"),
         ({"policy_timeout": -1.0}, "policy_timeout"),
     ):
         with pytest.raises(ValueError, match=text):

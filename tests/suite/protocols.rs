@@ -240,7 +240,7 @@ fn faults_say_where_and_names_that_are_near() {
     assert_eq!(read(good).expect("a protocol").name, "own");
     for (from, to, part) in [
         ("title: A\n", "", "no `title`"),
-        ("title: A", "titel: A", "no `title`"),
+        ("title: A", "titles: A", "no `title`"),
         ("behavior: none", "behaviour: none", "did you mean `behavior`"),
         ("ages: [3]", "ages: [30]", "months from 0 to 24"),
         ("seconds: 1", "seconds: 0", "own.yml:4: `seconds` is above 0"),
@@ -291,7 +291,7 @@ fn faults_say_where_and_names_that_are_near() {
         (short(25.0), "from 0 to 24"),
         (
             ProtocolPlan {
-                keys: "strenght: infant\n".to_string(),
+                keys: "strengths: infant\n".to_string(),
                 ..short(3.0)
             },
             "did you mean `strength`",
