@@ -29,6 +29,7 @@ export const sidebar = [
       senses: "Senses",
       actuation: "Actuation",
       growing: "Growing",
+      differences: "Infants who differ",
       infant: "How much of an infant is he",
     }),
   },
