@@ -346,6 +346,6 @@ mod tests {
         };
         assert_eq!(check(&nested(NESTED)), Ok(1));
         let refused = check(&nested(NESTED + 1)).expect_err("too deep");
-        assert!(refused.contains("within more than 4 graphs"), "{refused}");
+        assert!(refused.contains("nests graphs more than 4 deep"), "{refused}");
     }
 }
