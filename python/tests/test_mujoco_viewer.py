@@ -32,7 +32,14 @@ class Browser:
         self.window = window
 
     def ask(self, place: str, body: Optional[bytes] = None, **headers: str) -> tuple[int, bytes, Any]:
-        """Returns status, body and headers of an answer."""
+        """Returns status, body and headers of an answer; asks again, as a page does, while there is no new picture."""
+        while place.startswith("picture"):
+            found = self._ask_once(place, body, **headers)
+            if found[0] != 204:
+                return found
+        return self._ask_once(place, body, **headers)
+
+    def _ask_once(self, place: str, body: Optional[bytes], **headers: str) -> tuple[int, bytes, Any]:
         request = urllib.request.Request(self.window.url + place, data=body, headers=headers)
         try:
             with urllib.request.urlopen(request, timeout=10) as answer:
