@@ -32,7 +32,7 @@ class Browser:
         self.window = window
 
     def ask(self, place: str, body: Optional[bytes] = None, **headers: str) -> tuple[int, bytes, Any]:
-        """Returns status, body and headers of an answer; asks again, as a page does, while there is no new picture."""
+        """Returns status, body and headers of an answer. Like the page, it retries until there is a new picture."""
         while place.startswith("picture"):
             found = self._ask_once(place, body, **headers)
             if found[0] != 204:
@@ -150,7 +150,7 @@ def test_a_page_without_a_browser_draws_nothing(shown: tuple[Window, Browser]) -
 
 
 def test_a_page_that_is_left_ends(shown: tuple[Window, Browser], monkeypatch: pytest.MonkeyPatch) -> None:
-    """A reload is no end; the button is, and so is leaving."""
+    """A reload keeps the viewer running. The button and leaving the page end it."""
     from babybench_core.mujoco import page_server
 
     window, browser = shown

@@ -55,8 +55,8 @@ impl MimoMut<'_> {
     }
 
     /// Makes MIMo another infant of his population (`body_random`), between two episodes: see
-    /// [`Blueprint::with_body_number`](crate::Blueprint::with_body_number). The next call must be a reset. What remains is what remains of a
-    /// change of age.
+    /// [`Blueprint::with_body_number`](crate::Blueprint::with_body_number). The next call must be a reset. As with a
+    /// change of age, names and ids remain.
     ///
     /// # Errors
     /// As [`Blueprint::with_body_number`](crate::Blueprint::with_body_number). They change nothing.

@@ -52,7 +52,7 @@ pub(super) struct Doll {
 }
 
 impl Doll {
-    /// Draws MIMo alone, without clothes, filling the picture; returns `None` if there is no MIMo or no camera. MIMo has a face if
+    /// Draws MIMo alone, without clothes, so that he fills the picture; returns `None` if there is no MIMo or no camera. MIMo has a face if
     /// its textures are in `assets`.
     pub fn new(model: &Model, assets: &dyn AssetSource) -> Option<Self> {
         let mut doll = Self::posed(model, assets, [WIDTH, HEIGHT], ARMS[0])?;

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-_WINDOW = "there is no window of OpenGL: draw with mujoco.Renderer, whose scene takes markers, or show a page with mujoco.viewer"
+_WINDOW = (
+    "there is no OpenGL window: draw with mujoco.Renderer, whose scene takes markers, or show a page with mujoco.viewer"
+)
 _OPENGL = "there is no OpenGL: mujoco.Renderer draws pictures, depths and segmentations, and its scene takes markers"
 _PLUGINS = "the engine has no plugins: use MuJoCo for models that need them"
 _FLEXES = "flexes move in steps: read model.flex_vert, data.flexvert_xpos and the like"

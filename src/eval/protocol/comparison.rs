@@ -17,7 +17,7 @@ pub struct Comparison {
     pub ours: Option<ConfidenceInterval>,
     /// How far it is from the published number or range.
     pub difference: Option<Difference>,
-    /// Why there is no number of ours; empty if there is one.
+    /// Why MIMo's value is missing; empty if there is one.
     pub missing: String,
 }
 
