@@ -190,7 +190,7 @@ def _handler(page: PageServer) -> type[BaseHTTPRequestHandler]:
                 events = json.loads(self.rfile.read(length))
                 if not (isinstance(events, list) and all(isinstance(event, dict) for event in events)):
                     raise ValueError
-            except ValueError:
+            except (ValueError, RecursionError):
                 self.close_connection = True
                 self._answer(400, b"expected a list of events")
                 return

@@ -123,7 +123,7 @@ class Window:
             self.choose(event["number"])
         elif kind in ("turn", "move", "zoom"):
             by = [event.get(axis, 0.0) for axis in ("x", "y")]
-            if all(isinstance(part, (int, float)) and math.isfinite(part) for part in by):
+            if all(isinstance(part, (int, float)) and abs(part) < 100 for part in by):  # NaN is not, either
                 self._steer(kind, float(by[0]), float(by[1]))
         elif kind in ("pause", "step", "restart", "speed"):
             self.commands.append(event)
