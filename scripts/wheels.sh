@@ -8,7 +8,7 @@
 #   musllinux-x86_64, musllinux-aarch64    Linux with musl 1.2, as Alpine's
 #   check                                  the package compiles for macOS and Windows: no linker, no Python of theirs
 #   native                                 the wheel of the system that runs this: universal2 on macOS, otherwise with pip's tag
-#   sdist                                  the source distributions of both packages
+#   sdist                                  the source distributions of both packages, which are compiled once
 # The linker for Linux is Zig's, with the C library that the name says. Needs rustup, Python 3 with venv, and the network for crates and
 # wheels of tools. A wheel takes about ten minutes of one core.
 set -euo pipefail
@@ -71,6 +71,10 @@ linux() { # TARGET COMPATIBILITY
 sdist() {
   rm -rf "$work/made"
   "$tools/maturin" sdist --manifest-path python/Cargo.toml --out "$work/made" >&2
+  rm -rf "$work/unpacked"
+  mkdir "$work/unpacked"
+  tar -xzmf "$work"/made/*.tar.gz -C "$work/unpacked"
+  cargo check --quiet --release --target-dir "$work/check" --manifest-path "$work"/unpacked/*/python/Cargo.toml >&2
   hand_out "$work"/made/*
   kit sdist
 }

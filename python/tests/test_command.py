@@ -44,7 +44,7 @@ def folder(tmp_path: Path) -> Path:
 def call(folder: Path, *arguments: str, package: str = "babybench") -> subprocess.CompletedProcess[str]:
     """Runs a command there."""
     return subprocess.run(
-        [sys.executable, "-m", package, *arguments], cwd=folder, capture_output=True, text=True, timeout=120
+        [sys.executable, "-m", package, *arguments], cwd=folder, capture_output=True, text=True, timeout=600
     )
 
 
@@ -141,7 +141,7 @@ def test_a_training_that_is_interrupted_saves_its_log(folder: Path) -> None:
         time.sleep(0.1)
     time.sleep(1)
     process.send_signal(signal.SIGINT)
-    _, said = process.communicate(timeout=60)
+    _, said = process.communicate(timeout=600)
     assert process.returncode == 130, said
     assert "interrupted" in said
     assert (folder / "run" / "logs" / "training.pkl").is_file()

@@ -251,7 +251,7 @@ def test_a_shared_environment_is_refused_or_served_never_broken():
 def python(script, **options):
     """Runs a script in a process of its own, which may not take long."""
     command = [sys.executable, "-W", "ignore", "-c", textwrap.dedent(script)]
-    return subprocess.run(command, capture_output=True, text=True, timeout=60, **options)
+    return subprocess.run(command, capture_output=True, text=True, timeout=600, **options)
 
 
 @pytest.mark.skipif(not hasattr(os, "fork"), reason="this system does not fork")
@@ -315,7 +315,7 @@ def test_an_interrupt_in_the_middle_of_a_step_ends_it_in_order():
         time.sleep(0.3)
         process.send_signal(signal.SIGINT)
         try:
-            assert process.communicate(timeout=60)[0] == "in order\n"
+            assert process.communicate(timeout=600)[0] == "in order\n"
         finally:
             process.kill()
 

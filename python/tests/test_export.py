@@ -203,16 +203,16 @@ def test_the_command_exports(record, tmp_path):
     pytest.importorskip("pyarrow")
     command = [sys.executable, "-m", "babybench", "export", str(record.folder), "--to", "parquet,hdf5"]
     command += ["--out", str(tmp_path / "out")]
-    done = subprocess.run(command, capture_output=True, text=True, timeout=120)
+    done = subprocess.run(command, capture_output=True, text=True, timeout=600)
     assert done.returncode == 0, done.stderr
     assert (tmp_path / "out" / "record.parquet").is_file()
     assert "record.h5" in done.stdout
-    again = subprocess.run(command, capture_output=True, text=True, timeout=120)
+    again = subprocess.run(command, capture_output=True, text=True, timeout=600)
     assert again.returncode == 1
     assert "already exists" in again.stderr
     assert "Traceback" not in again.stderr
     command[command.index("parquet,hdf5")] = "csv"
-    other = subprocess.run(command, capture_output=True, text=True, timeout=120)
+    other = subprocess.run(command, capture_output=True, text=True, timeout=600)
     assert other.returncode != 0
     assert "there is no format 'csv'" in other.stderr
 

@@ -47,7 +47,7 @@ def trained(tmp_path_factory):
             "400",
             "--quiet",
         ]
-        done = subprocess.run([*command, "--noise", "held"], cwd=folder, capture_output=True, text=True, timeout=120)
+        done = subprocess.run([*command, "--noise", "held"], cwd=folder, capture_output=True, text=True, timeout=600)
         assert done.returncode == 0, done.stderr
     return folder
 
@@ -70,7 +70,7 @@ def test_curves_are_the_scores_of_the_command_line(runs):
     steps, score = logs.curve(records, "score")
     assert steps[-1] == 400
     done = subprocess.run(
-        [sys.executable, "-m", "babybench", "score", "noise-0"], cwd=runs, capture_output=True, text=True, timeout=60
+        [sys.executable, "-m", "babybench", "score", "noise-0"], cwd=runs, capture_output=True, text=True, timeout=600
     )
     assert f"score: {score[-1]}" in done.stdout
     _, parts = logs.curve(records, "parts")
@@ -125,7 +125,7 @@ def test_the_raster_has_the_times_of_the_measures(record):
 def test_the_command_draws_all_there_is(runs, record, tmp_path):
     command = [sys.executable, "-m", "babybench", "figures", "noise-0", "noise-1", f"six={record.folder}"]
     done = subprocess.run(
-        [*command, "--out", str(tmp_path / "out")], cwd=runs, capture_output=True, text=True, timeout=300
+        [*command, "--out", str(tmp_path / "out")], cwd=runs, capture_output=True, text=True, timeout=600
     )
     assert done.returncode == 0, done.stderr
     names = sorted(path.name for path in (tmp_path / "out").iterdir())
@@ -139,7 +139,7 @@ def test_the_command_draws_all_there_is(runs, record, tmp_path):
         (["noise-0", "--format", "gif"], "there is no format 'gif'"),
     ):
         command = [sys.executable, "-m", "babybench", "figures", *arguments, "--out", str(tmp_path / "other")]
-        done = subprocess.run(command, cwd=runs, capture_output=True, text=True, timeout=120)
+        done = subprocess.run(command, cwd=runs, capture_output=True, text=True, timeout=600)
         assert done.returncode == 1
         assert said in done.stderr
         assert "Traceback" not in done.stderr

@@ -61,7 +61,7 @@ def test_the_command_reads_tables_and_writes_archives(tmp_path):
     (tmp_path / "m.csv").write_text("time,robot:left_elbow,robot:right_knee\n" + "\n".join(rows))
     command = [sys.executable, "-m", "babybench", "senses", "--config", "c.yml", "--quiet"]
     table = ["--motion", "m.csv", "--degrees", "--save", "m.npz", "--record", "out", "--record-senses"]
-    done = subprocess.run([*command, *table], cwd=tmp_path, capture_output=True, text=True, timeout=120)
+    done = subprocess.run([*command, *table], cwd=tmp_path, capture_output=True, text=True, timeout=600)
     assert done.returncode == 0, done.stderr
     assert "10 frames at 50" in done.stdout
     with np.load(tmp_path / "m.npz") as motion:

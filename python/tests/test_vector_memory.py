@@ -57,7 +57,7 @@ EYES: dict[str, Any] = {"config": "hand_regard", "threads": 2}
 )
 def test_what_a_vector_says_is_what_it_takes(count: int, keys: dict[str, Any]) -> None:
     command = [sys.executable, "-c", CHILD, str(count), json.dumps(keys)]
-    done = subprocess.run(command, capture_output=True, text=True, check=False, timeout=300)
+    done = subprocess.run(command, capture_output=True, text=True, check=False, timeout=600)
     assert done.returncode == 0, done.stderr
     said, took = json.loads(done.stdout)
     print(f"{count} {keys}: said {said / 1e6:.0f} MB, took {took / 1e6:.0f} MB")

@@ -142,7 +142,7 @@ def test_a_kernel_sends_pictures_of_a_live_view(tmp_path: Path) -> None:
     ]
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # of Jupyter's own
-        nbclient.NotebookClient(page, timeout=300, resources={"metadata": {"path": str(tmp_path)}}).execute()
+        nbclient.NotebookClient(page, timeout=300, startup_timeout=300, resources={"metadata": {"path": str(tmp_path)}}).execute()
     outputs = page.cells[1]["outputs"]
     assert [out["output_type"] for out in outputs] == ["display_data"] * 2, outputs  # no warnings, either
     frame, picture = [out["data"]["text/html"] for out in outputs]
@@ -216,6 +216,6 @@ def test_the_command_shows_mimo_until_he_has_lived_enough(tmp_path: Path) -> Non
         "behavior: none\nscene: base\ntouch_active: false\nvision_active: false\nmax_episode_steps: 5\n"
     )
     call = [sys.executable, "-m", "babybench", "view", "--config", "c.yml", "--episodes", "2", "--policy", "zero"]
-    done = subprocess.run(call, cwd=tmp_path, capture_output=True, text=True, timeout=120)
+    done = subprocess.run(call, cwd=tmp_path, capture_output=True, text=True, timeout=600)
     assert done.returncode == 0, done.stderr
     assert done.stdout.startswith("http://127.0.0.1:")

@@ -40,7 +40,7 @@ def run(
     inherited["PYTHONPATH"] = os.pathsep.join([*map(str, path), *filter(None, [os.environ.get("PYTHONPATH")])])
     inherited.update(MUJOCO_GL="osmesa", MPLBACKEND="agg", OMP_NUM_THREADS="1", **env)
     done = subprocess.run(
-        [python, *map(str, args)], cwd=cwd, env=inherited, capture_output=True, text=True, timeout=550
+        [python, *map(str, args)], cwd=cwd, env=inherited, capture_output=True, text=True, timeout=600
     )
     assert (done.returncode != 0) is fails, f"{args}: {done.returncode}\n{done.stdout[-3000:]}\n{done.stderr[-5000:]}"
     return done
