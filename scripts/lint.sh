@@ -18,6 +18,9 @@ format() {
 }
 lints() {
   component clippy clippy
+  # .ci/fuzz has every target of fuzzing but one, and their lock file is up to date
+  diff <(sed -n 's/^path = "targets\///p' fuzz/Cargo.toml | grep -v ^policy.rs | sort) <(sed -n 's/^path = .*fuzz\/targets\///p' .ci/fuzz/Cargo.toml | sort)
+  cargo metadata --locked --format-version 1 --manifest-path fuzz/Cargo.toml >/dev/null
   cargo clippy --locked --profile testing --workspace --all-targets --all-features -- -D warnings
 }
 spelling() {
@@ -65,7 +68,7 @@ else
   lack 'spelling' 'there is no Python 3 with venv (Debian, Ubuntu: apt install python3-venv)'
 fi
 step 'licences' licences
-if [[ $parts == *' rust '* ]]; then
+if [[ $parts == *' rust '* || $parts == *' fuzz '* ]]; then
   step 'clippy' lints
   if [ "${1:-}" != quick ]; then
     step 'features' features

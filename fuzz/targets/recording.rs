@@ -24,12 +24,11 @@ const LONG: usize = 2;
 /// Reads an archive as a recording of an environment, and perhaps replays it.
 fn check(env: &mut Env, npz: &Npz, replayed: bool, one_step: bool) {
     let Ok(recording) = Recording::read(npz, env) else { return };
-    if replayed && recording.len <= LONG {
-        if let Ok(replayed) = replay(env, &recording, one_step) {
+    if replayed && recording.len <= LONG
+        && let Ok(replayed) = replay(env, &recording, one_step) {
             assert_eq!(replayed.qpos.len(), recording.len * env.model().nq);
             assert!(replayed.qpos.iter().all(|v| v.is_finite()), "a position is not finite");
         }
-    }
 }
 
 fuzz_target!(|data: &[u8]| {

@@ -46,7 +46,7 @@ fn rollouts_stay_within_three_floors() {
     let plans = [(Motion::Random, 300), (Motion::Sine, 300), (Motion::Hold, 100)];
     for case in Case::all() {
         for (motion, steps) in plans {
-            let rollouts = if FULL { 8 } else { 1 };
+            let rollouts = if FULL { 3 } else { 1 };
             let plan = Plan {
                 motion,
                 steps,
