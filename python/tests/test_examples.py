@@ -70,7 +70,9 @@ def test_notebooks(notebook, tmp_path):
     assert not any(cell.get("outputs") for cell in cells.cells), "notebooks are kept without output"
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # of Jupyter's own
-        client = nbclient.NotebookClient(cells, timeout=300, startup_timeout=300, resources={"metadata": {"path": str(tmp_path)}})
+        client = nbclient.NotebookClient(
+            cells, timeout=300, startup_timeout=300, resources={"metadata": {"path": str(tmp_path)}}
+        )
         client.execute(env={**os.environ, "MPLBACKEND": "module://matplotlib_inline.backend_inline"})
     kinds = [kind for cell in cells.cells for out in cell.get("outputs", []) for kind in out.get("data", {})]
     assert "image/png" in kinds

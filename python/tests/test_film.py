@@ -89,7 +89,9 @@ def test_a_browser_without_the_kernel_plays_it(tmp_path: Path) -> None:
     cells = nbformat.v4.new_notebook(cells=[nbformat.v4.new_code_cell(code)])
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # of Jupyter's own
-        nbclient.NotebookClient(cells, timeout=300, startup_timeout=300, resources={"metadata": {"path": str(tmp_path)}}).execute()
+        nbclient.NotebookClient(
+            cells, timeout=300, startup_timeout=300, resources={"metadata": {"path": str(tmp_path)}}
+        ).execute()
     (shown,) = [out["data"]["text/html"] for out in cells.cells[0]["outputs"] if "data" in out]
     # the kernel has ended, and this page comes from no server
     page = tmp_path / "page.html"

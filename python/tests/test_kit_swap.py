@@ -31,7 +31,12 @@ def run(checkout: Path, *arguments: str, **env: str) -> subprocess.CompletedProc
     """Runs Python there."""
     inherited = {k: v for k, v in os.environ.items() if not k.startswith(("BABYBENCH_", "PYTHONWARNINGS"))}
     return subprocess.run(
-        [sys.executable, *arguments], cwd=checkout, env={**inherited, **env}, capture_output=True, text=True, timeout=600
+        [sys.executable, *arguments],
+        cwd=checkout,
+        env={**inherited, **env},
+        capture_output=True,
+        text=True,
+        timeout=600,
     )
 
 

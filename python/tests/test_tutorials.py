@@ -167,7 +167,9 @@ def test_notebook_of_a_tutorial(name: str, folder: Path) -> None:
     cells = nbformat.read(root / "python" / "examples" / f"{name}.ipynb", as_version=4)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # of Jupyter's own
-        client = nbclient.NotebookClient(cells, timeout=600, startup_timeout=600, resources={"metadata": {"path": str(folder)}})
+        client = nbclient.NotebookClient(
+            cells, timeout=600, startup_timeout=600, resources={"metadata": {"path": str(folder)}}
+        )
         client.execute(env={**os.environ, "MPLBACKEND": "module://matplotlib_inline.backend_inline"})
     outputs = [out for cell in cells.cells for out in cell.get("outputs", [])]
     said = "".join(out.get("text", "") for out in outputs)

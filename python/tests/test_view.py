@@ -142,7 +142,9 @@ def test_a_kernel_sends_pictures_of_a_live_view(tmp_path: Path) -> None:
     ]
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # of Jupyter's own
-        nbclient.NotebookClient(page, timeout=300, startup_timeout=300, resources={"metadata": {"path": str(tmp_path)}}).execute()
+        nbclient.NotebookClient(
+            page, timeout=300, startup_timeout=300, resources={"metadata": {"path": str(tmp_path)}}
+        ).execute()
     outputs = page.cells[1]["outputs"]
     assert [out["output_type"] for out in outputs] == ["display_data"] * 2, outputs  # no warnings, either
     frame, picture = [out["data"]["text/html"] for out in outputs]
