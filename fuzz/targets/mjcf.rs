@@ -21,7 +21,10 @@ fuzz_target!(|data: &[u8]| {
     let check = |e: mjcf_loader::LoadError| {
         let said = e.to_string();
         // Any of the three can be at fault: a document may include the picture too.
-        assert!(["m.xml", "other.xml", "a.png"].iter().any(|file| said.contains(file)), "{said}");
+        assert!(
+            ["m.xml", "other.xml", "a.png"].iter().any(|file| said.contains(file)),
+            "{said}"
+        );
         assert!(said.len() < 4000 && !said.contains("Some("), "{said}");
         assert!(!said.chars().any(char::is_control), "{said:?}");
     };
@@ -34,9 +37,20 @@ fuzz_target!(|data: &[u8]| {
         Ok(model) => model,
         Err(e) => return check(e),
     };
-    let triples = [&model.body_ipos, &model.body_pos, &model.geom_size, &model.geom_pos, &model.jnt_axis];
+    let triples = [
+        &model.body_ipos,
+        &model.body_pos,
+        &model.geom_size,
+        &model.geom_pos,
+        &model.jnt_axis,
+    ];
     let numbers = triples.into_iter().flat_map(|list| list.as_flattened());
-    let more = [&model.body_mass, &model.geom_rbound, &model.qpos0, &model.dof_invweight0];
+    let more = [
+        &model.body_mass,
+        &model.geom_rbound,
+        &model.qpos0,
+        &model.dof_invweight0,
+    ];
     let mut numbers = numbers.chain(more.into_iter().flatten());
     assert!(numbers.all(|v| v.is_finite()), "a number is not finite");
     let _ = Scenery::new(&model, &assets);

@@ -17,7 +17,10 @@ fn check<T>(array: Result<Array<T>, NpzError>) {
 
 fuzz_target!(|data: &[u8]| {
     // small arrays: filling a gibibyte hides everything else
-    let limits = Limits { npz_array_bytes: 1 << 20, ..Limits::default() };
+    let limits = Limits {
+        npz_array_bytes: 1 << 20,
+        ..Limits::default()
+    };
     let npz = match Npz::from_bytes_with(data.to_vec(), "f.npz", &limits) {
         Ok(npz) => npz,
         Err(e) => return assert!(e.to_string().starts_with("f.npz"), "{e}"),

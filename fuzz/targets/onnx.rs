@@ -9,13 +9,30 @@ use libfuzzer_sys::fuzz_target;
 
 /// Operators whose output size or duration the model computes, which are not limited.
 const GROW: [&str; 13] = [
-    "ConstantOfShape", "ConvTranspose", "Expand", "EyeLike", "Loop", "OneHot", "Pad", "Range", "Resize", "Scan", "Tile", "TopK",
+    "ConstantOfShape",
+    "ConvTranspose",
+    "Expand",
+    "EyeLike",
+    "Loop",
+    "OneHot",
+    "Pad",
+    "Range",
+    "Resize",
+    "Scan",
+    "Tile",
+    "TopK",
     "Upsample",
 ];
 
 /// The observation: vectors of a few numbers, and eyes of two by two pixels.
 fn spaces() -> Vec<ObservationSpace> {
-    let space = |key, shape: &[usize], dtype, high| ObservationSpace { key, shape: shape.to_vec(), dtype, low: 0.0, high };
+    let space = |key, shape: &[usize], dtype, high| ObservationSpace {
+        key,
+        shape: shape.to_vec(),
+        dtype,
+        low: 0.0,
+        high,
+    };
     vec![
         space("observation", &[3], Dtype::F64, 1.0),
         space("touch", &[4], Dtype::F32, 1.0),

@@ -14,7 +14,9 @@ const LARGE: usize = 40;
 
 /// Returns how many steps a model takes: most failures happen in the first ones, so only one model in four takes many.
 fn steps(data: &[u8]) -> usize {
-    let sum = data.iter().fold(0usize, |sum, &byte| sum.wrapping_mul(31).wrapping_add(byte.into()));
+    let sum = data
+        .iter()
+        .fold(0usize, |sum, &byte| sum.wrapping_mul(31).wrapping_add(byte.into()));
     if (sum ^ sum >> 7) % 4 == 0 { 20 } else { 3 }
 }
 
@@ -35,7 +37,9 @@ fn run(engine: &mut dyn Engine, steps: usize) {
 
 fuzz_target!(|data: &[u8]| {
     let Ok(text) = std::str::from_utf8(data) else { return };
-    let Ok(spec) = load_str(text, "m.xml", &MemoryAssets::new()) else { return };
+    let Ok(spec) = load_str(text, "m.xml", &MemoryAssets::new()) else {
+        return;
+    };
     if spec.nv() > LARGE || spec.nbody() > LARGE {
         return;
     }

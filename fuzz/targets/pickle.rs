@@ -19,8 +19,14 @@ fn size(value: &Value, left: usize) -> Option<usize> {
 }
 
 fuzz_target!(|data: &[u8]| {
-    let limits = Limits { pickle_numbers: 1 << 16, pickle_objects: 1 << 14, ..Limits::default() };
-    let Ok(value) = pickle::from_bytes_with(data, &limits) else { return };
+    let limits = Limits {
+        pickle_numbers: 1 << 16,
+        pickle_objects: 1 << 14,
+        ..Limits::default()
+    };
+    let Ok(value) = pickle::from_bytes_with(data, &limits) else {
+        return;
+    };
     if size(&value, 5000).is_none() {
         return;
     }

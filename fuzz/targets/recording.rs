@@ -23,16 +23,23 @@ const LONG: usize = 2;
 
 /// Reads an archive as a recording of an environment, and perhaps replays it.
 fn check(env: &mut Env, npz: &Npz, replayed: bool, one_step: bool) {
-    let Ok(recording) = Recording::read(npz, env) else { return };
-    if replayed && recording.len <= LONG
-        && let Ok(replayed) = replay(env, &recording, one_step) {
-            assert_eq!(replayed.qpos.len(), recording.len * env.model().nq);
-            assert!(replayed.qpos.iter().all(|v| v.is_finite()), "a position is not finite");
-        }
+    let Ok(recording) = Recording::read(npz, env) else {
+        return;
+    };
+    if replayed
+        && recording.len <= LONG
+        && let Ok(replayed) = replay(env, &recording, one_step)
+    {
+        assert_eq!(replayed.qpos.len(), recording.len * env.model().nq);
+        assert!(replayed.qpos.iter().all(|v| v.is_finite()), "a position is not finite");
+    }
 }
 
 fuzz_target!(|data: &[u8]| {
-    let limits = Limits { npz_array_bytes: 1 << 20, ..Limits::default() };
+    let limits = Limits {
+        npz_array_bytes: 1 << 20,
+        ..Limits::default()
+    };
     let read = |bytes: Vec<u8>| Npz::from_bytes_with(bytes, "f.npz", &limits);
     let one_step = data.len() % 2 == 0;
     // the first byte tells whether the rest is an archive or what its arrays hold

@@ -39,12 +39,17 @@ fuzz_target!(|data: &[u8]| {
         std::fs::write(evaluation_path(folder, 0), &evaluation).expect("a file");
     }
     if let Ok(records) = read_training(folder)
-        && let Ok(score) = Score::new(&records, Compat::Api) {
-            assert!((0.0..=1.0).contains(&score.value), "a score of {}", score.value);
-            let _ = score.to_text(None);
-        }
+        && let Ok(score) = Score::new(&records, Compat::Api)
+    {
+        assert!((0.0..=1.0).contains(&score.value), "a score of {}", score.value);
+        let _ = score.to_text(None);
+    }
     match Report::new(folder) {
-        Ok(report) => assert!(!report.html.contains("NaN") && !report.html.contains("<script"), "{}", report.html),
+        Ok(report) => assert!(
+            !report.html.contains("NaN") && !report.html.contains("<script"),
+            "{}",
+            report.html
+        ),
         Err(e) => assert!(e.to_string().len() < 4000, "{e}"),
     }
 });

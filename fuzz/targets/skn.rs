@@ -43,5 +43,7 @@ fuzz_target!(|data: &[u8]| {
     let mut image = vec![0; view.rgb_len()];
     let poses = Poses::from(&state);
     let mut renderer = Renderer::cpu(scenery.into());
-    renderer.rgb(&[RenderRequest { poses, view }], [&mut image[..]]).expect("a picture");
+    renderer
+        .rgb(&[RenderRequest { poses, view }], [&mut image[..]])
+        .expect("a picture");
 });

@@ -22,7 +22,9 @@ const HEADER: usize = 32;
 fn checksum(bytes: &[u8]) -> u64 {
     let (words, rest) = bytes.as_chunks::<8>();
     let mix = |h: u64, w: u64| (h ^ w).wrapping_mul(0x9e37_79b9_7f4a_7c15).rotate_left(29);
-    let h = words.iter().fold(bytes.len() as u64, |h, w| mix(h, u64::from_le_bytes(*w)));
+    let h = words
+        .iter()
+        .fold(bytes.len() as u64, |h, w| mix(h, u64::from_le_bytes(*w)));
     rest.iter().fold(h, |h, b| mix(h, u64::from(*b)))
 }
 
@@ -44,7 +46,9 @@ fn changed(data: &[u8], snapshot: &Snapshot) -> Vec<u8> {
 /// Restores bytes, takes some steps, and restores the earlier state.
 fn check(env: &mut Env, make: impl FnOnce(&Snapshot) -> Vec<u8>, steps: usize) {
     let before = env.snapshot();
-    let Ok(snapshot) = Snapshot::from_bytes(make(&before)) else { return };
+    let Ok(snapshot) = Snapshot::from_bytes(make(&before)) else {
+        return;
+    };
     let _ = snapshot.info();
     if env.restore(&snapshot).is_err() {
         assert!(env.snapshot() == before, "a refused snapshot changed something");
@@ -56,7 +60,10 @@ fn check(env: &mut Env, make: impl FnOnce(&Snapshot) -> Vec<u8>, steps: usize) {
     let action = vec![0.5; env.action_space().len()];
     for _ in 0..steps {
         let Ok(step) = env.step(&action) else { break };
-        assert!(step.observation.proprioception.iter().all(|v| v.is_finite()), "not finite");
+        assert!(
+            step.observation.proprioception.iter().all(|v| v.is_finite()),
+            "not finite"
+        );
     }
     env.restore(&before).expect("it was taken here");
     assert!(env.snapshot() == before, "it does not come back");

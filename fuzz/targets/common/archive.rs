@@ -91,7 +91,11 @@ fn array(shape: &[usize], values: &[f64], whole: bool) -> Vec<u8> {
     out.extend((header.len() as u16).to_le_bytes());
     out.extend(header.as_bytes());
     for &value in values {
-        out.extend(if whole { (value as i64).to_le_bytes() } else { value.to_le_bytes() });
+        out.extend(if whole {
+            (value as i64).to_le_bytes()
+        } else {
+            value.to_le_bytes()
+        });
     }
     out
 }
@@ -104,7 +108,11 @@ fn crc32(bytes: &[u8]) -> u32 {
         while k < 256 {
             let (mut value, mut bit) = (k as u32, 0);
             while bit < 8 {
-                value = if value & 1 == 1 { 0xedb8_8320 ^ value >> 1 } else { value >> 1 };
+                value = if value & 1 == 1 {
+                    0xedb8_8320 ^ value >> 1
+                } else {
+                    value >> 1
+                };
                 bit += 1;
             }
             table[k] = value;
@@ -112,5 +120,7 @@ fn crc32(bytes: &[u8]) -> u32 {
         }
         table
     };
-    !bytes.iter().fold(!0, |sum, byte| TABLE[usize::from(sum as u8 ^ byte)] ^ sum >> 8)
+    !bytes
+        .iter()
+        .fold(!0, |sum, byte| TABLE[usize::from(sum as u8 ^ byte)] ^ sum >> 8)
 }

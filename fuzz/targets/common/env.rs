@@ -12,7 +12,11 @@ const RARE: usize = 64;
 
 /// Returns an environment of MIMo without touch and eyes, after a reset.
 pub fn mimo() -> Env {
-    let config = Config { touch_active: false, vision_active: false, ..Config::default() };
+    let config = Config {
+        touch_active: false,
+        vision_active: false,
+        ..Config::default()
+    };
     let mut env = Env::new(config).expect("the default scene");
     env.reset(Some(0)).expect("a reset");
     env
@@ -20,7 +24,9 @@ pub fn mimo() -> Env {
 
 /// Returns whether an input also steps MIMo.
 pub fn goes_on(data: &[u8]) -> bool {
-    let sum = data.iter().fold(0usize, |sum, &byte| sum.wrapping_mul(31).wrapping_add(byte.into()));
+    let sum = data
+        .iter()
+        .fold(0usize, |sum, &byte| sum.wrapping_mul(31).wrapping_add(byte.into()));
     (sum ^ sum >> 7) % RARE == 0
 }
 
@@ -45,7 +51,11 @@ impl Task for Small {
     }
 
     fn bind(&mut self, _config: &Config, _model: &Model) -> Result<TaskSizes, EnvError> {
-        Ok(TaskSizes { goal: 2, terms: 1, observation: 1 })
+        Ok(TaskSizes {
+            goal: 2,
+            terms: 1,
+            observation: 1,
+        })
     }
 
     fn begin(&mut self, scene: &mut TaskScene<'_>, desired: &mut [f64]) {
@@ -64,7 +74,11 @@ impl Task for Small {
 
     fn judge(&self, goal: Goal<'_>) -> StepReward {
         let distance = goal.desired[0] - goal.achieved[0];
-        StepReward { reward: distance, is_success: distance <= 0.0, is_failure: false }
+        StepReward {
+            reward: distance,
+            is_success: distance <= 0.0,
+            is_failure: false,
+        }
     }
 
     fn save(&self, out: &mut Vec<f64>) {
