@@ -12,7 +12,6 @@ from __future__ import annotations
 
 import subprocess
 import sys
-import tarfile
 import tempfile
 import tomllib
 import zipfile
@@ -21,9 +20,10 @@ from pathlib import Path
 
 def sources(dep_info: Path, repository: Path) -> list[Path]:
     """Returns the files of the repository that Cargo read, relative to its root."""
-    line = next(line for line in dep_info.read_text().splitlines() if line.split(": ")[0].endswith("lib_native.so"))
-    files = line.split(": ", 1)[1].replace("\\ ", "\0").split()
-    paths = [Path(file.replace("\0", " ")) for file in files]
+    library, _, files = dep_info.read_text().splitlines()[0].partition(": ")
+    if "_native." not in Path(library).name:  # .so, .dylib or .dll
+        sys.exit(f"{dep_info} begins with {library}: expected the library of the wheel")
+    paths = [Path(file.replace("\0", " ")) for file in files.replace("\\ ", "\0").split()]
     return [path.relative_to(repository) for path in paths if path.is_relative_to(repository)]
 
 
@@ -35,16 +35,15 @@ def main() -> None:
     if len(needed) < 100:
         sys.exit(f"{dep_info} names only {len(needed)} sources: was it built from this checkout?")
     with zipfile.ZipFile(wheel) as files:
-        names = [name for name in files.namelist() if ".dist-info/" not in name and not name.endswith(".so")]
+        names = [name for name in files.namelist() if ".dist-info/" not in name and not name.endswith((".so", ".pyd"))]
     needed |= {Path("python", name): Path(name) for name in names}
     with tempfile.TemporaryDirectory() as folder:
-        with tarfile.open(archive) as tar:
-            tar.extractall(folder, filter="data")
+        subprocess.run(["tar", "-xzf", archive, "-C", folder], check=True)
         (unpacked,) = Path(folder).iterdir()
         faults = [path for path, packed in needed.items() if not is_same(repository / path, unpacked / packed)]
         if faults:
             sys.exit("\n".join([f"{archive.name} lacks, or has other bytes of:", *map(str, faults)]))
-        command = ["cargo", "metadata", "--offline", "--format-version", "1", "--manifest-path", unpacked / "python/Cargo.toml"]
+        command = ["cargo", "metadata", "--format-version", "1", "--manifest-path", unpacked / "python/Cargo.toml"]
         subprocess.run(command, check=True, stdout=subprocess.DEVNULL)
         new = packages(unpacked / "Cargo.lock") - packages(repository / "Cargo.lock")
         if new:
